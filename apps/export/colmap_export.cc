@@ -50,7 +50,8 @@ std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   int number = 0;
   for (const ColoredPoint& p : points) {
     text += Format("%d %.6g %.6g %.6g %d %d %d 0\n", ++number, p.position.x(),
-                   p.position.y(), p.position.z(), p.red, p.green, p.blue);
+                   p.position.y(), p.position.z(), p.color[0], p.color[1],
+                   p.color[2]);
   }
   return text;
 }
@@ -63,9 +64,7 @@ std::string PackPoints(const std::vector<ColoredPoint>& points) {
   for (const ColoredPoint& p : points) {
     AppendLittleEndian(++number, &bytes);
     for (const float x : p.position) AppendLittleEndian(double{x}, &bytes);
-    for (const uint8_t c : {p.red, p.green, p.blue}) {
-      AppendLittleEndian(c, &bytes);
-    }
+    bytes.append(p.color.begin(), p.color.end());
     AppendLittleEndian(0.0, &bytes);          // error
     AppendLittleEndian(uint64_t{0}, &bytes);  // track length
   }

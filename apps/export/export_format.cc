@@ -7,7 +7,6 @@
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/undistorter.h"
-#include "frontend/fusion/cloud_fusion.h"
 
 namespace rgbd_pose {
 namespace {

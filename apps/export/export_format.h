@@ -13,7 +13,7 @@
 #include "core/util/input_error.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
-#include "frontend/fusion/fusion_options.h"
+#include "frontend/fusion/cloud_fusion.h"
 
 namespace rgbd_pose {
 

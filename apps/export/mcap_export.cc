@@ -216,9 +216,8 @@ Json PointCloud(const std::vector<ColoredPoint>& points) {
   std::string bytes;
   for (const ColoredPoint& p : points) {
     for (const float x : p.position) AppendLittleEndian(x, &bytes);
-    for (const uint8_t c : {p.red, p.green, p.blue, uint8_t{255}}) {
-      AppendLittleEndian(c, &bytes);
-    }
+    bytes.append(p.color.begin(), p.color.end());
+    bytes.push_back('\xFF');
   }
   Json fields;
   int offset = 0;

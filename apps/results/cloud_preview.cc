@@ -17,9 +17,7 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
   for (const ColoredPoint& point : points) {
     positions.push_back(shown_from_world * point.position.cast<double>());
     box.extend(positions.back());
-    for (const uint8_t c : {point.red, point.green, point.blue}) {
-      AppendLittleEndian(c, &color_bytes);
-    }
+    color_bytes.append(point.color.begin(), point.color.end());
   }
   if (points.empty()) box.extend(Eigen::Vector3d::Zero());
   const Eigen::Vector3d low = box.min();

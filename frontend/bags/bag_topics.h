@@ -8,7 +8,7 @@
 #include "frontend/bags/ros_image.h"
 #include "frontend/bags/ros_messages.h"
 #include "frontend/bags/transform_tree.h"
-#include "frontend/files/camera_setup.h"
+#include "frontend/files/camera_file.h"
 
 namespace rgbd_pose {
 

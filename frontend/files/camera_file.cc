@@ -2,11 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -28,11 +25,10 @@ Camera ReadOrbSlam(const YamlSection& file) {
   Camera camera;
   camera.width = file.Pixels("Camera.width");
   camera.height = file.Pixels("Camera.height");
-  for (const CameraParameter& parameter : kCameraParameters) {
-    const std::string key = prefix + parameter.name;
-    const bool is_needed = parameter.name[0] == 'f' || parameter.name[0] == 'c';
-    camera.*parameter.value =
-        is_needed ? file.Number(key) : file.NumberOr(key, 0.0);
+  for (const auto& [name, value] : kCameraParameters) {
+    const std::string key = prefix + name;
+    const bool is_needed = name[0] == 'f' || name[0] == 'c';
+    camera.*value = is_needed ? file.Number(key) : file.NumberOr(key, 0.0);
   }
   const std::string type =
       file.Word("Camera.type", {"PinHole", "Rectified", "KannalaBrandt8"});
@@ -40,13 +36,9 @@ Camera ReadOrbSlam(const YamlSection& file) {
   return camera;
 }
 
-// Reads the coefficients at a key; `counts` are the allowed numbers of them.
-void ReadDistortion(const YamlSection& file, const std::string& key,
-                    const std::vector<size_t>& counts, bool is_equidistant,
-                    Camera* camera) {
-  camera->SetDistortion(
-      is_equidistant ? LensModel::kEquidistant : LensModel::kRational,
-      file.Numbers(key, counts));
+LensModel LensOf(const std::string& distortion_model) {
+  return distortion_model == "equidistant" ? LensModel::kEquidistant
+                                           : LensModel::kRational;
 }
 
 Camera ReadCameraInfoFile(const YamlSection& file) {
@@ -60,12 +52,13 @@ Camera ReadCameraInfoFile(const YamlSection& file) {
     matrix.Fail("data", "must read [fx 0 cx 0 fy cy 0 0 1], row by row");
   }
   Camera camera = {width, height, k[0], k[4], k[2], k[5]};
-  const bool is_equidistant = model == "equidistant";
-  ReadDistortion(file.Child("distortion_coefficients"), "data",
-                 is_equidistant         ? std::vector<size_t>{4}
-                 : model == "plumb_bob" ? std::vector<size_t>{4, 5}
-                                        : std::vector<size_t>{8},
-                 is_equidistant, &camera);
+  const std::vector<size_t> counts =
+      model == "equidistant" ? std::vector<size_t>{4}
+      : model == "plumb_bob" ? std::vector<size_t>{4, 5}
+                             : std::vector<size_t>{8};
+  camera.SetDistortion(
+      LensOf(model),
+      file.Child("distortion_coefficients").Numbers("data", counts));
   return camera;
 }
 
@@ -79,8 +72,7 @@ Camera ReadKalibr(const YamlSection& file, const std::string& name) {
   const int height = cam.Pixels("resolution", size[1]);
   const std::vector<double> k = cam.Numbers("intrinsics", {4});
   Camera camera = {width, height, k[0], k[1], k[2], k[3]};
-  ReadDistortion(cam, "distortion_coeffs", {4}, model == "equidistant",
-                 &camera);
+  camera.SetDistortion(LensOf(model), cam.Numbers("distortion_coeffs", {4}));
   return camera;
 }
 
@@ -144,8 +136,7 @@ std::optional<double> ReadDepthScale(const YamlSection& file) {
 
 Eigen::Vector3d VectorOr0(const YamlSection& file, const std::string& key) {
   if (!file.Has(key)) return Eigen::Vector3d::Zero();
-  const std::vector<double> numbers = file.Numbers(key, {3});
-  return {numbers[0], numbers[1], numbers[2]};
+  return Eigen::Vector3d(file.Numbers(key, {3}).data());
 }
 
 // Larger values are errors in the file, perhaps of units.
@@ -155,7 +146,6 @@ void CheckSize(const YamlSection& file, const std::string& key, double size,
   file.Fail(key, Format("must be at most %g ", most) + unit);
 }
 
-// Exposure times of the rows of colour and depth.
 void ReadShutters(const YamlSection& file, RgbdCamera* camera) {
   for (const ShutterParameter& parameter : kShutterParameters) {
     double* const value = &(camera->*parameter.image.*parameter.value);
@@ -165,7 +155,6 @@ void ReadShutters(const YamlSection& file, RgbdCamera* camera) {
   }
 }
 
-// The errors of depth found by rgbd_calibrate.
 DepthCorrection ReadDepthCorrection(const YamlSection& file) {
   DepthCorrection errors;
   errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);

@@ -1,11 +1,42 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/geometry/camera.h"
-#include "frontend/files/camera_setup.h"
+#include "frontend/frame/depth_registration.h"
 
 namespace rgbd_pose {
+
+// An RGB-D camera as described by a calibration file or a recording.
+struct CameraSetup {
+  CameraSetup() = default;
+  explicit CameraSetup(const Camera& color) : camera(color) {}
+
+  // Keeps the depth scale.
+  CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
+      : camera(rgbd.camera),
+        depth_scale(rgbd.depth_scale),
+        depth_correction(rgbd.depth_correction),
+        color_shutter(rgbd.color_shutter),
+        depth_shutter(rgbd.depth_shutter) {}
+
+  Camera camera;  // of the colour image
+
+  // Raw units of the depth image per metre; nothing if unknown.
+  std::optional<double> depth_scale;
+
+  // As in RgbdCamera.
+  DepthCorrection depth_correction;
+  Shutter color_shutter, depth_shutter;
+
+  // Nothing if the depth images are registered to colour.
+  std::optional<DepthCamera> depth_camera;
+};
+
+// The camera after depth is registered, by default with the depth scale 5000 of
+// the TUM RGB-D benchmark; many ROS drivers use 1000 instead.
+RgbdCamera RegisteredCamera(const CameraSetup& setup);
 
 // Reads the calibration of an RGB-D camera from a YAML file in one of these
 // common layouts:
@@ -18,18 +49,17 @@ namespace rgbd_pose {
 //  - Kalibr: cam0 with camera_model pinhole, intrinsics [fx fy cx cy],
 //    distortion_model radtan with distortion_coeffs [k1 k2 p1 p2] or
 //    equidistant with [k1 k2 k3 k4], resolution [width height].
-// The depth scale is the top-level key DepthMapFactor or RGBD.DepthMapFactor
-// (raw units per metre). Only ORB-SLAM writes it.
+// Top-level keys of all layouts: the depth scale, DepthMapFactor or
+// RGBD.DepthMapFactor (raw units per metre; only ORB-SLAM writes it), and with
+// the default 0 exposure times of rows (s, see Shutter): color_time_offset,
+// color_readout, depth_time_offset, depth_readout; and errors of depth (see
+// DepthCorrection): inverse_depth_offset (1/m), depth_rotation (rotation
+// vector, rad), depth_translation (m).
 // `depth_camera` is the name of the depth camera in a Kalibr file: cam0 if
 // depth is registered to colour, otherwise cam1, for example. Each camera but
 // cam0 has T_cn_cnm1, the transform from the camera before it. Empty means that
-// depth is registered, but is an error for a file with several cameras. Further
-// top-level keys default to 0. Exposure times of rows (s, see Shutter):
-// color_time_offset, color_readout, depth_time_offset, depth_readout. Errors of
-// depth found by rgbd_calibrate (see DepthCorrection): inverse_depth_offset
-// (1/m), depth_rotation (rotation vector, rad), depth_translation (m).
-// Throws InputError (file:line, key) for an unknown layout or camera model, a
-// missing key, a wrong number of entries, and values of no valid camera.
+// depth is registered, but is an error for a file with several cameras.
+// Throws InputError (file:line, key) for anything else.
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera = "");
 
@@ -37,22 +67,19 @@ CameraSetup ReadCameraFile(const std::string& path,
 CameraSetup ReadCameraText(const std::string& text, const std::string& path,
                            const std::string& depth_camera = "");
 
-// The camera of a preset (see CameraPreset) or of a file. A file that has the
-// name of a preset is reached as ./name. Throws InputError, which lists the
-// presets, if the argument is neither.
+// The camera of a preset (CameraPreset) or of a file; ./name is always a file.
+// Throws InputError, which lists the presets, if the argument is neither.
 CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
                                const std::string& depth_camera = "");
 
-// The same for a camera with registered depth. The default depth scale is 5000,
-// as in the TUM RGB-D benchmark; many ROS drivers use 1000 instead.
+// The same for a camera with registered depth.
 RgbdCamera ResolveCamera(const std::string& file_or_preset);
 
-// The text of a camera file (see ReadCameraFile) for a camera. The file `like`
-// gives the layout and all other keys; in ORB-SLAM's layout its lines and
-// comments are kept as well. If `like` is empty, a preset or a file that cannot
-// hold the camera, the layout is ORB-SLAM's; for such a file a comment says
-// that other keys were lost. The depth correction has its own keys. Reading the
-// text gives the same camera. Throws InputError as ReadCameraFile does.
+// The text of a camera file that is read as this camera. The file `like` gives
+// the layout and all other keys; in ORB-SLAM's layout its lines and comments
+// are kept as well. If `like` is empty, a preset or a file that cannot hold the
+// camera, the layout is ORB-SLAM's; for such a file a comment says that other
+// keys were lost. Throws InputError as ReadCameraFile does.
 std::string FormatCameraFile(const RgbdCamera& camera, const std::string& like);
 
 }  // namespace rgbd_pose

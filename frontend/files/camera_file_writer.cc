@@ -3,13 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -23,15 +20,11 @@ using YamlLines =
     std::vector<std::pair<std::string, std::string>>;  // key, value
 
 // The keys that are the same in all layouts, see RgbdLines.
-const std::vector<std::string>& RgbdKeys() {
-  static const std::vector<std::string> keys = {
-      "color_time_offset", "color_readout",        "depth_time_offset",
-      "depth_readout",     "inverse_depth_offset", "depth_rotation",
-      "depth_translation"};
-  return keys;
-}
+constexpr const char* kRgbdKeys[] = {"color_time_offset",    "color_readout",
+                                     "depth_time_offset",    "depth_readout",
+                                     "inverse_depth_offset", "depth_rotation",
+                                     "depth_translation"};
 
-// Formats a number with all significant digits.
 std::string Digits(double value) { return Format("%.10g", value); }
 
 std::string List(const Eigen::Vector3d& v) {
@@ -73,20 +66,15 @@ std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
 
 // Replaces values in the text of a file and keeps all other lines. `file` is
 // the parsed text. Missing keys of `values` are added unless they are 0, and
-// the lines of RgbdKeys are replaced by RgbdLines. The result is correct only
-// if each of these keys has a line of its own. In general keys may share a
-// line, and a value may span lines or have an anchor used by others.
+// the lines of kRgbdKeys are replaced by RgbdLines. The result is correct only
+// if each of these keys has a line of its own, without an anchor.
 std::string EditLines(const std::string& text, const YAML::Node& file,
                       const YamlLines& values, const RgbdCamera& camera) {
   std::stringstream in(text);
-  std::vector<std::string> lines;
+  std::vector<std::string> lines;  // with their ends
   for (std::string line; std::getline(in, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    lines.push_back(line);
-  }
-  std::vector<bool> is_left_out(lines.size(), false);
-  for (const std::string& key : RgbdKeys()) {
-    if (const auto line = LineOf(file, key, lines)) is_left_out[*line] = true;
+    lines.push_back(line + "\n");
   }
   size_t last = 0;  // the last changed line
   std::string added;
@@ -99,55 +87,38 @@ std::string EditLines(const std::string& text, const YAML::Node& file,
     const size_t comment = lines[*line].find(" #");
     lines[*line] =
         key + ": " + value +
-        (comment == std::string::npos ? "" : lines[*line].substr(comment));
+        (comment == std::string::npos ? "\n" : lines[*line].substr(comment));
     last = std::max(last, *line);
   }
-  added += RgbdLines(camera);
-  std::string result;
-  for (size_t i = 0; i < lines.size(); ++i) {
-    if (!is_left_out[i]) result += lines[i] + "\n";
-    if (i == last) result += added;
+  for (const char* const key : kRgbdKeys) {
+    if (const auto line = LineOf(file, key, lines)) lines[*line].clear();
   }
-  return result;
+  lines[last] += added + RgbdLines(camera);
+  return Join(lines, "");
 }
 
-// These functions build a new map and leave the old one unchanged, as other
-// keys may refer to it.
-
-// Sets the value of one key.
+// Sets the value of a key, or removes the key if the value is null. Builds a
+// new map and leaves the old one unchanged, as other keys may refer to it.
 template <typename Value>
 void Set(YAML::Node* map, const std::string& key, const Value& value) {
   const YAML::Node node(value);
   YAML::Node result(YAML::NodeType::Map);
   result.SetStyle(map->Style());
-  bool is_there = false;
+  bool is_done = node.IsNull();
   for (const auto& entry : *map) {
     const bool is_it = entry.first.Scalar() == key;
-    if (is_it && is_there) continue;  // only the first one counts
+    if (is_it && is_done) continue;  // only the first one counts
     result.force_insert(entry.first, is_it ? node : entry.second);
-    is_there |= is_it;
+    is_done |= is_it;
   }
-  if (!is_there) result.force_insert(key, node);
-  map->reset(result);
-}
-
-// Removes these keys.
-void Remove(YAML::Node* map, const std::vector<std::string>& keys) {
-  YAML::Node result(YAML::NodeType::Map);
-  result.SetStyle(map->Style());
-  for (const auto& entry : *map) {
-    if (std::count(keys.begin(), keys.end(), entry.first.Scalar()) == 0) {
-      result.force_insert(entry.first, entry.second);
-    }
-  }
+  if (!is_done) result.force_insert(key, node);
   map->reset(result);
 }
 
 YamlLines OrbSlamLines(const Camera& camera, const std::string& prefix) {
   YamlLines lines;
-  for (const CameraParameter& parameter : kCameraParameters) {
-    lines.emplace_back(prefix + parameter.name,
-                       Digits(camera.*parameter.value));
+  for (const auto& [name, value] : kCameraParameters) {
+    lines.emplace_back(prefix + name, Digits(camera.*value));
   }
   if (camera.lens_model == LensModel::kEquidistant) {
     lines.emplace_back("Camera.type", "\"KannalaBrandt8\"");
@@ -173,9 +144,7 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   const std::vector<double> coefficients = c.Distortion();
   const bool is_equidistant = c.lens_model == LensModel::kEquidistant;
   for (const auto& [key, value] : values) Set(&file, key, value);
-  if (is_of_orb_slam) {
-    // This layout has no nested keys.
-  } else if (file["camera_matrix"].IsDefined()) {
+  if (!is_of_orb_slam && file["camera_matrix"].IsDefined()) {
     Set(&file, "image_width", c.width);
     Set(&file, "image_height", c.height);
     YAML::Node matrix = file["camera_matrix"];
@@ -193,8 +162,8 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         : coefficients.size() == 5 ? "plumb_bob"
                                    : "rational_polynomial");
     // The projection matrix of rectified images is of the old camera.
-    Remove(&file, {"projection_matrix"});
-  } else {
+    Set(&file, "projection_matrix", YAML::Node());
+  } else if (!is_of_orb_slam) {
     YAML::Node cam0 = file["cam0"];
     Set(&cam0, "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
     // If radtan cannot hold all coefficients, Says returns false later.
@@ -205,33 +174,12 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         ToNode({static_cast<double>(c.width), static_cast<double>(c.height)}));
     Set(&file, "cam0", cam0);
   }
-  Remove(&file, RgbdKeys());
+  for (const char* const key : kRgbdKeys) Set(&file, key, YAML::Node());
   file.SetStyle(YAML::EmitterStyle::Block);
   // The first line of OpenCV's files, which is not valid YAML.
   const bool is_of_opencv = text.rfind("%YAML", 0) == 0;
   const std::string result = is_of_opencv ? "%YAML:1.0\n---\n" : "";
   return result + YAML::Dump(file) + "\n" + RgbdLines(rgbd);
-}
-
-// All numbers of a camera except the motion of its depth correction.
-std::vector<double> NumbersOf(const RgbdCamera& rgbd) {
-  const Camera& camera = rgbd.camera;
-  const bool has_known_times = rgbd.color_shutter.is_known ||
-                               !rgbd.color_shutter.IsGlobal() ||
-                               !rgbd.depth_shutter.IsGlobal();
-  std::vector<double> numbers = {static_cast<double>(camera.lens_model),
-                                 static_cast<double>(camera.width),
-                                 static_cast<double>(camera.height),
-                                 rgbd.depth_scale,
-                                 rgbd.depth_correction.inverse_depth_offset,
-                                 has_known_times ? 1.0 : 0.0};
-  for (const CameraParameter& parameter : kCameraParameters) {
-    numbers.push_back(camera.*parameter.value);
-  }
-  for (const ShutterParameter& parameter : kShutterParameters) {
-    numbers.push_back(rgbd.*parameter.image.*parameter.value);
-  }
-  return numbers;
 }
 
 // Whether reading a text gives this camera.
@@ -245,17 +193,31 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
   const auto is_same = [](double a, double b) {
     return std::abs(a - b) <= 1e-8 * (1.0 + std::abs(b));
   };
-  const std::vector<double> found = NumbersOf(read);
-  const std::vector<double> wanted = NumbersOf(camera);
-  const Rigid3d between = read.depth_correction.depth_from_color.Inverse() *
-                          camera.depth_correction.depth_from_color;
-  return std::equal(found.begin(), found.end(), wanted.begin(), is_same) &&
+  const auto has_known_times = [](const RgbdCamera& c) {
+    return c.color_shutter.is_known || !c.color_shutter.IsGlobal() ||
+           !c.depth_shutter.IsGlobal();
+  };
+  for (const auto& [name, value] : kCameraParameters) {
+    if (!is_same(read.camera.*value, camera.camera.*value)) return false;
+  }
+  for (const auto& [name, image, value, most] : kShutterParameters) {
+    if (!is_same(read.*image.*value, camera.*image.*value)) return false;
+  }
+  const DepthCorrection& errors = read.depth_correction;
+  const DepthCorrection& wanted = camera.depth_correction;
+  const Rigid3d between =
+      errors.depth_from_color.Inverse() * wanted.depth_from_color;
+  return read.camera.lens_model == camera.camera.lens_model &&
+         read.camera.width == camera.camera.width &&
+         read.camera.height == camera.camera.height &&
+         has_known_times(read) == has_known_times(camera) &&
+         is_same(read.depth_scale, camera.depth_scale) &&
+         is_same(errors.inverse_depth_offset, wanted.inverse_depth_offset) &&
          is_same(between.Angle(), 0.0) &&
          is_same(between.translation.norm(), 0.0);
 }
 
-// The file `like` with the values of a camera; nothing if its layout cannot
-// hold the camera.
+// The file `like` with the values of a camera, if its layout can hold it.
 std::optional<std::string> Edited(const RgbdCamera& camera,
                                   const std::string& like) {
   ResolveCamera(like);  // throws if the file has errors

@@ -1,7 +1,5 @@
 #include "frontend/files/depth_noise_file.h"
 
-#include <filesystem>
-
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -30,22 +28,18 @@ DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
   model.centre = file.NumberOr("centre", model.centre);
   model.mean_share = file.NumberOr("mean_share", model.mean_share);
   RequireSound(model.Check(), path + ": ");
-  // A larger model is in millimetres or describes something else.
-  constexpr double kMost = 1.0;  // m, at 1 m
-  if (model.sigma(1.0) > kMost) {
+  const double sigma = model.sigma(1.0);
+  if (sigma > 1.0) {
     throw InputError(path + Format(": sigma is %.3g m at a depth of 1 m; are "
                                    "the values in metres?",
-                                   model.sigma(1.0)));
+                                   sigma));
   }
   return model;
 }
 
 DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file) {
   if (const auto* row = FindDepthNoiseModel(name_or_file)) return *row;
-  std::error_code error;
-  if (std::filesystem::is_regular_file(name_or_file, error)) {
-    return ReadDepthNoiseFile(name_or_file);
-  }
+  if (IsFile(name_or_file)) return ReadDepthNoiseFile(name_or_file);
   throw InputError(
       "unknown depth noise '" + name_or_file +
       "': no such file; available models: " + Join(DepthNoiseModelNames()));

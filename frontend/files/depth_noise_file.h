@@ -14,8 +14,7 @@ std::string FormatDepthNoiseFile(const DepthNoiseModel& model);
 // mean_share default to 0 and 1. Errors (InputError) name file, line and key.
 DepthNoiseModel ReadDepthNoiseFile(const std::string& path);
 
-// The model of this name, or the model of this file. Throws InputError, which
-// lists the known names, if there is neither.
+// The model of this name or file. Otherwise throws InputError with all names.
 DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file);
 
 }  // namespace rgbd_pose

@@ -18,16 +18,13 @@ bool IsJpeg(std::string_view bytes) {
   return bytes.rfind("\xFF\xD8\xFF", 0) == 0;
 }
 
-// OpenCV fills the missing rest of a JPEG with grey and reports success, so
-// this looks for the end marker after the last scan. Neither marker can occur
-// inside the compressed data.
+// OpenCV fills the missing rest of a JPEG with grey and reports success. The
+// markers of a scan and of the end cannot occur inside the compressed data.
 bool IsCutOffJpeg(std::string_view bytes) {
-  constexpr std::string_view kScanStart = "\xFF\xDA";
-  constexpr std::string_view kJpegEnd = "\xFF\xD9";
   if (!IsJpeg(bytes)) return false;
-  const size_t last_scan = bytes.rfind(kScanStart);
+  const size_t last_scan = bytes.rfind("\xFF\xDA");
   return last_scan == std::string_view::npos ||
-         bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
+         bytes.find("\xFF\xD9", last_scan) == std::string_view::npos;
 }
 
 // Whether recordings use the format. Decoders of OpenCV for other formats may
@@ -63,17 +60,16 @@ cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
   return image;
 }
 
-// Decodes an image, in colour as well if `color` is not null.
-cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
-               cv::Mat* color) {
+// Decodes an image as it is, or to gray values: 8 or 16 bits, and in colour as
+// well if `color` is not null.
+cv::Mat Decode(const std::string& bytes, const std::string& path, bool to_gray,
+               cv::Mat* color = nullptr) {
   if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
-  const bool is_gray = (flags & ~cv::IMREAD_ANYDEPTH) == cv::IMREAD_GRAYSCALE;
   bool is_damaged = IsCutOffJpeg(bytes);
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-  const PngUse use = flags == cv::IMREAD_UNCHANGED ? PngUse::kDepth
-                     : !is_gray                    ? PngUse::kOther
-                     : color == nullptr            ? PngUse::kGray
-                                                   : PngUse::kGrayAndColor;
+  const PngUse use = !to_gray           ? PngUse::kDepth
+                     : color == nullptr ? PngUse::kGray
+                                        : PngUse::kGrayAndColor;
   const DecodedPng png = DecodePng(bytes, use);
   if (!png.image.empty()) {
     if (color != nullptr) *color = png.color;
@@ -89,26 +85,25 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
                      ": is damaged, cut off or not in a supported format "
                      "(PNG, JPEG, TIFF, BMP, PGM, PPM, WebP)");
   }
+  if (!to_gray) return DecodeByOpenCv(bytes, path, cv::IMREAD_UNCHANGED);
   // JPEG stores grey levels by the same formula, with less loss than colours.
-  if (!is_gray || IsJpeg(bytes)) {
-    if (color != nullptr) {
-      *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
-    }
-    return DecodeByOpenCv(bytes, path, flags);
+  const bool is_jpeg = IsJpeg(bytes);
+  if (is_jpeg && color != nullptr) {
+    *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
   }
+  const int mode = is_jpeg ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR;
+  cv::Mat image = DecodeByOpenCv(bytes, path, mode | cv::IMREAD_ANYDEPTH);
+  if (is_jpeg) return image;
   // The conversion to grey differs between OpenCV's decoders.
-  cv::Mat image = DecodeByOpenCv(bytes, path, flags | cv::IMREAD_COLOR);
   if (color != nullptr) *color = image.clone();
-  if (image.depth() == CV_8U) {
-    cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
-  }
+  if (image.depth() == CV_8U) cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
   return image;
 }
 
 }  // namespace
 
-cv::Mat ReadImageFile(const std::string& path, int flags) {
-  return Decode(ReadTextFile(path), path, flags, nullptr);
+cv::Mat ReadImageFile(const std::string& path) {
+  return Decode(ReadTextFile(path), path, /*to_gray=*/false);
 }
 
 cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
@@ -117,8 +112,7 @@ cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
 
 cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
                         cv::Mat* color) {
-  cv::Mat gray =
-      Decode(bytes, path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, color);
+  const cv::Mat gray = Decode(bytes, path, /*to_gray=*/true, color);
   if (gray.type() != CV_8UC1) {
     throw InputError(path +
                      ": a colour image must have 8 bits per channel, this one "
@@ -132,7 +126,7 @@ cv::Mat ReadDepthImageFile(const std::string& path) {
 }
 
 cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
-  cv::Mat depth = Decode(bytes, path, cv::IMREAD_UNCHANGED, nullptr);
+  const cv::Mat depth = Decode(bytes, path, /*to_gray=*/false);
   if (depth.type() != CV_16UC1) {
     throw InputError(path +
                      ": a depth image must have 16 bits and 1 channel, "

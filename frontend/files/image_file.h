@@ -7,21 +7,18 @@
 
 namespace rgbd_pose {
 
-// Reads a whole image file. `flags` as for cv::imread, but an EXIF orientation
-// is never applied, as the rotated image would not match its camera model.
-// Throws InputError, which names the file, if it cannot be read, is no image or
-// is cut off. (Changed bytes inside a JPEG are not detected: it has no
-// checksum.) Thread-safe.
-cv::Mat ReadImageFile(const std::string& path, int flags);
+// Reads an image file as it is. An EXIF orientation is never applied, as the
+// rotated image would not match its camera model. Throws InputError, which
+// names the file, if it cannot be read, is no image or is cut off. (Changed
+// bytes inside a JPEG are not detected: it has no checksum.) Thread-safe.
+cv::Mat ReadImageFile(const std::string& path);
 
 // Reads a colour or gray image as gray values (CV_8UC1) and, unless `color` is
-// null, in colour (CV_8UC3 in the order blue, green, red; most PNG files are
-// decoded only once for both). Also throws InputError for other than 8 bits per
-// channel: such an image would be a depth image.
+// null, in colour (CV_8UC3 in the order blue, green, red). Also throws
+// InputError for other than 8 bits per channel, as in depth images.
 cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color = nullptr);
 
-// Reads a depth image of 16 bits and one channel (CV_16UC1). Also throws
-// InputError for any other type of image.
+// Reads a depth image (CV_16UC1). Also throws InputError for any other type.
 cv::Mat ReadDepthImageFile(const std::string& path);
 
 // The same for the bytes of a file; `path` is used in error messages.

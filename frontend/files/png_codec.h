@@ -30,7 +30,6 @@ enum class PngUse {
   kGray,          // CV_8UC1
   kGrayAndColor,  // also CV_8UC3 in the order blue, green, red
   kDepth,         // CV_16UC1
-  kOther,         // anything else; left to OpenCV
 };
 
 // Result of DecodePng.
@@ -40,10 +39,9 @@ struct DecodedPng {
   bool is_damaged = false;  // OpenCV need not be tried
 };
 
-// Decodes the kinds of PNG used in RGB-D recordings by libdeflate. This takes
-// about half the time of OpenCV and gives identical values. Three channels or
-// one of 8 bits are decoded to gray, one channel of 16 bits to depth. The
-// header gives the kind. Other kinds are left to OpenCV to decompress.
+// Decodes the kinds of PNG used in RGB-D recordings by libdeflate, in about
+// half the time of OpenCV, to identical values: three channels or one of 8 bits
+// to gray, one channel of 16 bits to depth. Other kinds are left to OpenCV.
 //
 // A file that begins as a PNG is damaged if it is cut off, if a checksum of a
 // needed chunk is wrong, if a side has more than 16384 pixels or, for the kinds
@@ -52,8 +50,7 @@ struct DecodedPng {
 DecodedPng DecodePng(std::string_view bytes, PngUse use);
 
 // Encodes a non-empty grey (CV_8UC1) or depth image (CV_16UC1) as a PNG file by
-// libdeflate. This takes about half the time of OpenCV for a file of the same
-// size. Thread-safe.
+// libdeflate, in about half the time of OpenCV. Thread-safe.
 std::string EncodePngByLibdeflate(const cv::Mat& image);
 
 }  // namespace rgbd_pose

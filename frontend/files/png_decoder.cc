@@ -12,30 +12,13 @@
 namespace rgbd_pose {
 namespace {
 
-// Colour types (section 11.2.2).
-constexpr int kPngGray = 0;
-constexpr int kPngRgb = 2;
-
-// The contents of the chunks of a PNG file.
+// The contents of a PNG file.
 struct PngImage {
   int width = 0;
   int height = 0;
-  int bit_depth = 0;
-  int color_type = 0;
-  bool is_interlaced = false;
-  std::string compressed;
-
-  // Bytes per row, with the filter type before the pixels.
-  size_t Stride(int pixel_bytes) const {
-    return 1 + static_cast<size_t>(pixel_bytes) * width;
-  }
-};
-
-// What a file contains according to its chunks.
-enum class PngContent {
-  kDamaged,
-  kOther,  // no PNG or one that is not decoded here for the given use
-  kOurs,
+  bool is_rgb = false;     // three channels, otherwise one
+  bool is_ours = false;    // whether it is decoded here for the given use
+  std::string compressed;  // if it is decoded here
 };
 
 // More than any camera has; keeps a few wrong bytes from allocating all memory.
@@ -67,7 +50,8 @@ bool NextChunk(std::string_view* bytes, Chunk* chunk) {
   return true;
 }
 
-bool ReadHeader(std::string_view header, PngImage* png) {
+// Reads the header (section 11.2.2). False if it is invalid.
+bool ReadHeader(std::string_view header, PngUse use, PngImage* png) {
   if (header.size() != 13) return false;
   const auto* data = reinterpret_cast<const uint8_t*>(header.data());
   const uint32_t width = BigEndian(data);
@@ -77,56 +61,43 @@ bool ReadHeader(std::string_view header, PngImage* png) {
   }
   png->width = static_cast<int>(width);
   png->height = static_cast<int>(height);
-  png->bit_depth = data[8];
-  png->color_type = data[9];
-  png->is_interlaced = data[12] == 1;
-  // There are five colour types, one compression method, one filter method and
-  // two interlace methods.
+  const int bits = data[8], color_type = data[9], interlacing = data[12];
+  png->is_rgb = color_type == 2;
+  const bool is_gray = color_type == 0;
+  png->is_ours =
+      interlacing == 0 &&
+      (use == PngUse::kDepth ? bits == 16 && is_gray
+                             : bits == 8 && (is_gray || png->is_rgb));
+  // There are five colour types, one method each of compression and filters.
   const bool is_color =
-      std::string_view("\0\2\3\4\6", 5).find(static_cast<char>(data[9])) !=
+      std::string_view("\0\2\3\4\6", 5).find(static_cast<char>(color_type)) !=
       std::string_view::npos;
-  return is_color && data[10] == 0 && data[11] == 0 && data[12] <= 1;
+  return is_color && data[10] == 0 && data[11] == 0 && interlacing <= 1;
 }
 
-// Whether by its header an image is of a kind that is decoded here.
-bool IsOurs(const PngImage& png, PngUse use) {
-  if (png.is_interlaced) return false;
-  if (use == PngUse::kDepth) {
-    return png.bit_depth == 16 && png.color_type == kPngGray;
-  }
-  return use != PngUse::kOther && png.bit_depth == 8 &&
-         (png.color_type == kPngRgb || png.color_type == kPngGray);
-}
-
-// Reads all chunks. If the result is kOurs, `png` has the compressed bytes.
-PngContent ReadPngChunks(std::string_view bytes, PngUse use, PngImage* png) {
-  constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
-  if (bytes.rfind(kSignature, 0) != 0) return PngContent::kOther;
-  bytes.remove_prefix(kSignature.size());
+// Reads all chunks after the signature. False if the file is damaged.
+bool ReadPngChunks(std::string_view bytes, PngUse use, PngImage* png) {
   Chunk chunk;
   if (!NextChunk(&bytes, &chunk) || chunk.type != "IHDR" || !chunk.is_intact ||
-      !ReadHeader(chunk.data, png)) {
-    return PngContent::kDamaged;
+      !ReadHeader(chunk.data, use, png)) {
+    return false;
   }
-  bool is_ours = IsOurs(*png, use);
-  if (is_ours) png->compressed.reserve(bytes.size());
+  if (png->is_ours) png->compressed.reserve(bytes.size());
   while (NextChunk(&bytes, &chunk)) {
     // Chunks needed to decode the image begin with a capital letter.
     const bool is_critical = (chunk.type[0] & 0x20) == 0;
-    if (is_critical && !chunk.is_intact) return PngContent::kDamaged;
-    if (chunk.type == "IEND") {
-      return is_ours ? PngContent::kOurs : PngContent::kOther;
-    }
+    if (is_critical && !chunk.is_intact) return false;
+    if (chunk.type == "IEND") return true;
     if (chunk.type != "IDAT") {
       // Other chunks may affect pixel values, such as a colour space.
-      is_ours &=
+      png->is_ours &=
           chunk.is_intact && (chunk.type == "pHYs" || chunk.type == "tIME" ||
                               chunk.type == "tEXt");
-    } else if (is_ours) {
+    } else if (png->is_ours) {
       png->compressed += chunk.data;
     }
   }
-  return PngContent::kDamaged;
+  return false;
 }
 
 // The neighbour nearest to left + up - up_left. Computed without branches, as
@@ -141,56 +112,34 @@ int PaethPredictor(int left, int up, int up_left) {
   return is_left ? left : nearer;
 }
 
-// Adds its prediction to each byte of a row, with all channels in parallel.
-template <int kPixelBytes, typename Predict>
-void AddPrediction(const uint8_t* up_row, uint8_t* row, int size,
-                   Predict predict) {
-  int left[kPixelBytes] = {};
-  int up_left[kPixelBytes] = {};
-  for (int i = 0; i < size; i += kPixelBytes) {
-    for (int k = 0; k < kPixelBytes; ++k) {
-      const int up = up_row[i + k];
-      const int value = row[i + k] + predict(left[k], up, up_left[k]);
-      row[i + k] = static_cast<uint8_t>(value);
-      left[k] = row[i + k];
-      up_left[k] = up;
-    }
-  }
-}
-
-// Reverses a filter of section 9. False if the filter does not exist.
+// Reverses a filter of section 9 by adding its prediction to each byte of a
+// row, with all channels in parallel. False if the filter does not exist.
 template <int kPixelBytes>
 bool Unfilter(int filter, const uint8_t* up_row, uint8_t* row, int size) {
-  switch (filter) {
-    case 0:
-      return true;
-    case 1:
-      AddPrediction<kPixelBytes>(up_row, row, size,
-                                 [](int left, int, int) { return left; });
-      return true;
-    case 2:
-      AddPrediction<kPixelBytes>(up_row, row, size,
-                                 [](int, int up, int) { return up; });
-      return true;
-    case 3:
-      AddPrediction<kPixelBytes>(up_row, row, size, [](int left, int up, int) {
-        return (left + up) / 2;
-      });
-      return true;
-    case 4:
-      AddPrediction<kPixelBytes>(up_row, row, size, PaethPredictor);
-      return true;
-    default:
-      return false;
-  }
+  const auto add = [=](auto predict) {
+    int left[kPixelBytes] = {};
+    int up_left[kPixelBytes] = {};
+    for (int i = 0; i < size; i += kPixelBytes) {
+      for (int k = 0; k < kPixelBytes; ++k) {
+        const int up = up_row[i + k];
+        const int value = row[i + k] + predict(left[k], up, up_left[k]);
+        row[i + k] = static_cast<uint8_t>(value);
+        left[k] = row[i + k];
+        up_left[k] = up;
+      }
+    }
+  };
+  if (filter == 1) add([](int left, int, int) { return left; });
+  if (filter == 2) add([](int, int up, int) { return up; });
+  if (filter == 3) add([](int left, int up, int) { return (left + up) / 2; });
+  if (filter == 4) add(PaethPredictor);
+  return filter <= 4;
 }
 
-// Decompresses an image of `size` bytes. Null if there are fewer or they are
-// damaged. `has_more`: whether there are more.
+// Decompresses `size` bytes. Null if there are fewer or they are damaged.
 std::unique_ptr<uint8_t[]> Decompress(const PngImage& png, size_t size,
                                       bool* has_more) {
-  // Maximum compression ratio of the format. The check avoids allocating memory
-  // for an impossible size.
+  // Of the format; no memory is allocated for an impossible size.
   constexpr size_t kMaxRatio = 1032;
   if (size / kMaxRatio > png.compressed.size()) return nullptr;
   std::unique_ptr<uint8_t[]> rows(new uint8_t[size]);
@@ -215,7 +164,7 @@ bool ReadRows(const PngImage& png, uint8_t* rows, Convert convert) {
   const std::vector<uint8_t> above_first(size, 0);
   const uint8_t* up_row = above_first.data();
   for (int y = 0; y < png.height; ++y) {
-    uint8_t* row = rows + y * png.Stride(kPixelBytes) + 1;
+    uint8_t* row = rows + y * (1 + static_cast<size_t>(size)) + 1;
     if (!Unfilter<kPixelBytes>(row[-1], up_row, row, size)) return false;
     convert(row, y);
     up_row = row;
@@ -223,13 +172,13 @@ bool ReadRows(const PngImage& png, uint8_t* rows, Convert convert) {
   return true;
 }
 
-// Reads gray values and, unless `color` is empty, colours.
+// Reads gray values and, unless their image is empty, colours.
 template <int kChannels>
-bool ReadGray(const PngImage& png, uint8_t* rows, cv::Mat* gray,
-              cv::Mat* color) {
+bool ReadGray(const PngImage& png, uint8_t* rows, DecodedPng* decoded) {
+  cv::Mat& color = decoded->color;
   return ReadRows<kChannels>(png, rows, [&](const uint8_t* row, int y) {
-    uint8_t* to = gray->ptr<uint8_t>(y);
-    uint8_t* bgr = color->empty() ? nullptr : color->ptr<uint8_t>(y);
+    uint8_t* to = decoded->image.ptr<uint8_t>(y);
+    uint8_t* bgr = color.empty() ? nullptr : color.ptr<uint8_t>(y);
     for (int x = 0; x < png.width; ++x, row += kChannels) {
       const uint8_t red = row[0];
       const uint8_t green = row[kChannels / 2];
@@ -255,32 +204,30 @@ bool ReadDepth(const PngImage& png, uint8_t* rows, cv::Mat* depth) {
 }  // namespace
 
 DecodedPng DecodePng(std::string_view bytes, PngUse use) {
-  DecodedPng decoded;
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
+  if (bytes.rfind(kSignature, 0) != 0) return {};
+  const DecodedPng damaged = {{}, {}, /*is_damaged=*/true};
+  bytes.remove_prefix(kSignature.size());
   PngImage png;
-  const PngContent content = ReadPngChunks(bytes, use, &png);
-  decoded.is_damaged = content == PngContent::kDamaged;
-  if (content != PngContent::kOurs) return decoded;
+  if (!ReadPngChunks(bytes, use, &png)) return damaged;
+  if (!png.is_ours) return {};
 
-  const bool is_rgb = png.color_type == kPngRgb;
-  const int pixel_bytes = is_rgb ? 3 : png.bit_depth / 8;
+  const bool is_depth = use == PngUse::kDepth;
+  const size_t row_bytes = (png.is_rgb ? 3 : is_depth ? 2 : 1) * png.width;
   bool has_more = false;
   const std::unique_ptr<uint8_t[]> rows =
-      Decompress(png, png.Stride(pixel_bytes) * png.height, &has_more);
-  if (has_more) return decoded;
-  cv::Mat image, color;
-  bool is_read = rows != nullptr;
-  if (is_read && use == PngUse::kDepth) {
-    image.create(png.height, png.width, CV_16UC1);
-    is_read = ReadDepth(png, rows.get(), &image);
-  } else if (is_read) {
-    image.create(png.height, png.width, CV_8UC1);
-    if (use == PngUse::kGrayAndColor) color.create(image.size(), CV_8UC3);
-    is_read = is_rgb ? ReadGray<3>(png, rows.get(), &image, &color)
-                     : ReadGray<1>(png, rows.get(), &image, &color);
+      Decompress(png, (1 + row_bytes) * png.height, &has_more);
+  if (has_more) return {};
+  if (rows == nullptr) return damaged;
+  DecodedPng decoded;
+  decoded.image.create(png.height, png.width, is_depth ? CV_16UC1 : CV_8UC1);
+  if (use == PngUse::kGrayAndColor) {
+    decoded.color.create(png.height, png.width, CV_8UC3);
   }
-  if (is_read) return {image, color, /*is_damaged=*/false};
-  decoded.is_damaged = true;
-  return decoded;
+  const bool is_read = is_depth     ? ReadDepth(png, rows.get(), &decoded.image)
+                       : png.is_rgb ? ReadGray<3>(png, rows.get(), &decoded)
+                                    : ReadGray<1>(png, rows.get(), &decoded);
+  return is_read ? decoded : damaged;
 }
 
 }  // namespace rgbd_pose

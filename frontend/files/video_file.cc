@@ -39,11 +39,9 @@ VideoFile::VideoFile(const std::string& path) : path_(path) {
                      ": cannot be read as a video; is it damaged or cut off?");
   }
   video_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0.0);
-  const auto whole = [this](int id) {
-    return static_cast<int>(video_.get(id));
-  };
-  size_ = {whole(cv::CAP_PROP_FRAME_WIDTH), whole(cv::CAP_PROP_FRAME_HEIGHT)};
-  count_ = whole(cv::CAP_PROP_FRAME_COUNT);
+  size_ = {static_cast<int>(video_.get(cv::CAP_PROP_FRAME_WIDTH)),
+           static_cast<int>(video_.get(cv::CAP_PROP_FRAME_HEIGHT))};
+  count_ = static_cast<int>(video_.get(cv::CAP_PROP_FRAME_COUNT));
 }
 
 std::shared_ptr<cv::Mat> VideoFile::Next() {

@@ -12,22 +12,19 @@ namespace rgbd_pose {
 // not converted to pictures, which saves half the time.
 class VideoFile {
  public:
-  // Opens all images of the file, including those that its edit list hides from
-  // players, without rotating them. Throws InputError if the file is missing or
-  // is no video.
+  // Opens all images of the file, including those that its edit list hides,
+  // without rotating them. Throws InputError if it is missing or no video.
   explicit VideoFile(const std::string& path);
 
   const std::string& path() const { return path_; }
   cv::Size size() const { return size_; }
   int count() const { return count_; }  // number of images in the header
 
-  // Advances to the next image and returns a handle for At. If the handle is
-  // released before the next call, the image is skipped. Throws InputError if
-  // it cannot be decoded.
+  // Advances to the next image and returns a handle for At. If it is released
+  // before the next call, the image is skipped. Throws InputError on damage.
   std::shared_ptr<cv::Mat> Next();
 
-  // The image of a handle: CV_8UC3, blue, green, red. Thread-safe. Throws
-  // InputError if it is damaged.
+  // The image of a handle: CV_8UC3 (BGR). Thread-safe. InputError on damage.
   const cv::Mat& At(const std::shared_ptr<cv::Mat>& place);
 
  private:

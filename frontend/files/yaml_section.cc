@@ -7,17 +7,6 @@
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
-namespace {
-
-// The first line of OpenCV's files, %YAML:1.0, is not valid YAML. Its line end
-// is kept, which leaves the line numbers unchanged.
-std::string WithoutDirective(std::string_view content) {
-  std::string text(WithoutByteOrderMark(content));
-  if (text.rfind("%YAML", 0) == 0) text.erase(0, text.find_first_of("\r\n"));
-  return text;
-}
-
-}  // namespace
 
 YamlSection YamlSection::FromFile(const std::string& path) {
   return FromText(ReadTextFile(path), path);
@@ -25,8 +14,12 @@ YamlSection YamlSection::FromFile(const std::string& path) {
 
 YamlSection YamlSection::FromText(const std::string& text,
                                   const std::string& path) {
+  std::string yaml(WithoutByteOrderMark(text));
+  // The first line of OpenCV's files, %YAML:1.0, is not valid YAML. Its line
+  // end is kept, which leaves the line numbers unchanged.
+  if (yaml.rfind("%YAML", 0) == 0) yaml.erase(0, yaml.find_first_of("\r\n"));
   try {
-    const YAML::Node node = YAML::Load(WithoutDirective(text));
+    const YAML::Node node = YAML::Load(yaml);
     return {path, "", node.IsMap() ? node : YAML::Node(YAML::NodeType::Map)};
   } catch (const YAML::Exception& error) {
     throw InputError(path, error.mark.line + 1, "not valid YAML: " + error.msg);

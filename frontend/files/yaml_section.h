@@ -7,9 +7,8 @@
 
 namespace rgbd_pose {
 
-// A map of a YAML file, read with checks. Any error (a missing key, a word that
+// A map of a YAML file, also of OpenCV's. Any error (a missing key, a word that
 // is no finite number, ...) is an InputError that names file, line and key.
-// YAML files written by OpenCV can be read as well.
 class YamlSection {
  public:
   // The top level of a file; empty if the top level is not a map.
@@ -34,13 +33,11 @@ class YamlSection {
   // A 4 x 4 matrix, row by row: a list of 4 lists of numbers, or of 16 numbers.
   std::vector<double> Matrix(const std::string& key) const;
 
-  // A positive whole number of pixels: the value of a key, or a number already
-  // read from there.
+  // A whole number of pixels (> 0): of a key, or a number read from there.
   int Pixels(const std::string& key) const;
   int Pixels(const std::string& key, double number) const;
 
-  // The value of a key, which must be one of `known`. If the key is missing,
-  // the first of `known`.
+  // The value of a key, one of `known`; the first of them if it is missing.
   std::string Word(const std::string& key,
                    const std::vector<std::string>& known) const;
 

@@ -11,9 +11,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Neighbours that differ by more than this many sigmas of a depth are on two
-// surfaces: 4 sigmas of a difference, whose sigma is sqrt(2) times the sigma of
-// a depth. For slanted surfaces kMaxSlope per pixel is added.
+// Neighbours that differ by more sigmas of a depth are on two surfaces: 4
+// sigmas of a difference. For slanted surfaces kMaxSlope per pixel is added.
 constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;
 
 // Relative change of depth from one pixel to the next on the steepest surface
@@ -126,11 +125,9 @@ std::string DepthScaleWarning(const Frame& frame) {
   constexpr double kMaxPlausible = 20.0;  // m
   std::vector<double> depths;
   depths.reserve(frame.depth.total());
-  for (int row = 0; row < frame.depth.rows; ++row) {
-    for (int column = 0; column < frame.depth.cols; ++column) {
-      const double depth = frame.DepthAt(column, row);
-      if (depth > 0.0) depths.push_back(depth);
-    }
+  for (const uint16_t raw : cv::Mat_<uint16_t>(frame.depth)) {
+    if (raw == 0 || raw == Frame::kNoDepth) continue;
+    depths.push_back(raw / frame.depth_scale);
   }
   if (depths.empty()) return "";
   const double median = UpperMedian(&depths);

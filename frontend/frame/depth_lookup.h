@@ -28,23 +28,20 @@ struct DepthLookupOptions {
 // The depth at an image point (px, distorted), never a mix of two surfaces. As
 // the inverse depth of a plane is linear in the image, a plane is fitted to the
 // inverse depths of the 3 x 3 neighbours and evaluated at the point. There is
-// no depth if the neighbours are not on one surface (their spread exceeds the
-// noise). With holes in the neighbourhood the result is the depth of the
-// nearest pixel, if the other pixels agree with it.
+// none if their spread exceeds the noise. With holes in the neighbourhood it is
+// the depth of the nearest pixel, if the other pixels agree with it.
 DepthSample LookUpDepth(const Frame& frame, double u, double v,
                         const DepthLookupOptions& options);
 
 // Unit normal (camera axes, towards the camera) of the surface seen at an image
-// point (px). A plane is fitted to the inverse depths of 3 x 3 pixels; they are
-// several pixels apart, as a longer baseline reduces the effect of depth noise.
-// Zero if a depth is missing or if the nine points are not on one plane (an
-// edge between two surfaces). `place`: the image point on the plane z = 1,
-// without distortion.
+// point (px): a plane is fitted to the inverse depths of 3 x 3 pixels, several
+// pixels apart to reduce the effect of depth noise. Zero if a depth is missing
+// or if the nine points are not on one plane. `place`: the image point on the
+// plane z = 1, without distortion.
 Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
                              double v, const Eigen::Vector2d& place);
 
-// The largest difference (m) between the depths of neighbouring pixels on one
-// surface at a depth (m), caused by noise and slope.
+// The largest step (m) of depth to a neighbour on one surface at a depth (m).
 double MaxSurfaceStep(double depth, const DepthNoiseModel& noise);
 
 // Whether a pixel of a depth image (CV_16UC1), not at its border, is on a
@@ -55,8 +52,7 @@ bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step);
 
 // A warning of one line if the median depth of a frame is implausible for an
 // RGB-D camera (below 0.2 m or above 20 m), as caused by a wrong depth scale.
-// Empty if it is plausible or if the frame has no depth. Small errors are not
-// detected: a scale that is wrong by a factor of 5 still gives plausible rooms.
+// Otherwise empty, also if the frame has no depth.
 std::string DepthScaleWarning(const Frame& frame);
 
 }  // namespace rgbd_pose

@@ -21,9 +21,8 @@ Places FirstBeyond(const Block& x, float end) {
   return (x + 1.0F).max(0.0F).min(end).cast<int>();
 }
 
-// The size of a depth pixel in the colour image at the same depth, px. Lens
-// distortion makes some pixels larger than others. `place`: its ray on the
-// plane z = 1; NaN: none.
+// The size of a depth pixel in the colour image at the same depth, px. `place`:
+// its ray on the plane z = 1; NaN: none.
 Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& place,
                           const Camera& color) {
   if ((!depth.HasDistortion() && !color.HasDistortion()) ||
@@ -81,9 +80,8 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
   const float p1 = lens.p1, p2 = lens.p2;
   // Smaller depths (m) are behind the glass of the colour camera.
   constexpr float kMinDepth = 0.01F;
-  // A ray with a larger squared tangent is outside every lens that radial
-  // distortion describes. Its polynomial may fold such rays back into the
-  // image.
+  // A ray with a larger squared tangent is outside every lens, but a polynomial
+  // of distortion may fold it back into the image.
   const float max_tangent_squared =
       color_.lens_model == LensModel::kEquidistant ? 100.0F : 4.0F;
   const auto columns = static_cast<float>(registered->cols);
@@ -113,8 +111,7 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
     const auto is_seen = raw > 0.0F && raw < Frame::kNoDepth &&
                          there_z > kMinDepth && ray_r2 < max_tangent_squared &&
                          there < Frame::kNoDepth;
-    // Rectangles are half-open: adjacent ones do not overlap. An unseen pixel
-    // has an empty rectangle.
+    // Rectangles are half-open; that of an unseen pixel is empty.
     const Block right = is_seen.select(u + half_width, -1.0F);
     const Places u0 = FirstBeyond(u - half_width, columns);
     const Places u1 = FirstBeyond(right, columns);

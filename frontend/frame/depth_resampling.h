@@ -11,23 +11,12 @@
 
 namespace rgbd_pose {
 
-// Interpolation of raw depths between pixels: for one pixel, for eight and for
-// an image.
-
-constexpr int kEight = 8;
+// Interpolation of raw depths between pixels: for one, eight and all pixels.
 
 // Neighbours that differ by more than this fraction of the nearest depth are on
 // different surfaces. 1.6 % is 4 sigmas of a Kinect at 3 m, and the step
 // between neighbouring pixels on a surface seen at 83 degrees.
 constexpr int kMaxStepShift = 6;  // 2^-6
-
-// Either none of the depths is 0, or all depths are 0.
-inline bool IsOneSurface(uint16_t a, uint16_t b, uint16_t c, uint16_t d) {
-  const uint16_t low = std::min(std::min(a, b), std::min(c, d));
-  const uint16_t high = std::max(std::max(a, b), std::max(c, d));
-  return static_cast<uint16_t>(high - low) <=
-         static_cast<uint16_t>(low >> kMaxStepShift);
-}
 
 // Raw depth of an image (CV_16UC1, 0: none) between pixels of one surface,
 // otherwise of the nearest pixel; 0 outside.
@@ -48,7 +37,9 @@ inline float SampleDepth(const cv::Mat& depth, float u, float v) {
   }
   const auto* a = depth.ptr<uint16_t>(above) + left;
   const auto* b = depth.ptr<uint16_t>(above + 1) + left;
-  if (!IsOneSurface(a[0], a[1], b[0], b[1])) return nearest;
+  const uint16_t low = std::min(std::min(a[0], a[1]), std::min(b[0], b[1]));
+  const uint16_t high = std::max(std::max(a[0], a[1]), std::max(b[0], b[1]));
+  if (high - low > (low >> kMaxStepShift)) return nearest;
   const float top = a[0] + right * static_cast<float>(a[1] - a[0]);
   const float bottom = b[0] + right * static_cast<float>(b[1] - b[0]);
   return top + down * (bottom - top);
@@ -65,7 +56,6 @@ struct EightMoves {
 inline void MoveEight(const uint16_t* top, const uint16_t* bottom,
                       const uint16_t* nearest, const EightMoves& by,
                       uint16_t* to) {
-  static_assert(kEight == cv::v_uint16x8::nlanes);
   const cv::v_uint16x8 a = cv::v_load(top);
   const cv::v_uint16x8 b = cv::v_load(top + 1);
   const cv::v_uint16x8 c = cv::v_load(bottom);
@@ -111,11 +101,24 @@ inline uint16_t EncodeDepth(float raw) {
              : 0;
 }
 
-// Resamples a depth image (CV_16UC1, 0: no depth). `place` maps the centre of a
-// pixel of the result to its position in `depth`, px. Interpolates between four
-// depths of one surface; otherwise takes the nearest one, so edges are not
-// smeared. There is no depth beyond the border.
-cv::Mat ResampleDepth(const cv::Mat& depth, const cv::Size& size,
-                      const cv::Matx23d& place);
+// Resamples a depth image (CV_16UC1, 0: no depth) by SampleDepth, so edges are
+// not smeared. `place` maps the centre of a pixel of the result to its position
+// in `depth`, px.
+inline cv::Mat ResampleDepth(const cv::Mat& depth, const cv::Size& size,
+                             const cv::Matx23d& place) {
+  const cv::Matx23f to_depth = place;
+  cv::Mat resampled = cv::Mat::zeros(size, CV_16UC1);
+  for (int v = 0; v < size.height; ++v) {
+    auto* to = resampled.ptr<uint16_t>(v);
+    for (int u = 0; u < size.width; ++u) {
+      const cv::Vec2f at = to_depth * cv::Vec3f(u, v, 1.0F);
+      if (at[0] > -1.0F && at[0] < depth.cols && at[1] > -1.0F &&
+          at[1] < depth.rows) {
+        to[u] = EncodeDepth(SampleDepth(depth, at[0], at[1]));
+      }
+    }
+  }
+  return resampled;
+}
 
 }  // namespace rgbd_pose

@@ -10,7 +10,7 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kFlowBlock = RayGrid::kStep;  // px; with a constant flow
-static_assert(kFlowBlock == kEight);
+static_assert(kFlowBlock == cv::v_uint16x8::nlanes);
 
 // Smaller differences of displacement (px) within a block, and between two
 // iterations, do not matter.

@@ -25,8 +25,7 @@ struct Frame {
   // Velocity of the camera at the time stamp; nothing if unknown.
   std::optional<Twist> twist = {};
 
-  // Of the size of gray, CV_8UC3 in the order blue, green, red. Empty unless
-  // the source was asked to keep colours.
+  // CV_8UC3 (BGR), of the size of gray; empty unless the source keeps colours.
   cv::Mat color;
 
   // Depth at a pixel, m; 0 if there is none.
@@ -35,10 +34,9 @@ struct Frame {
     return raw == kNoDepth ? 0.0 : raw / depth_scale;
   }
 
-  // Whether all rows of both images were exposed at the time stamp. Stamps that
-  // differ by less than 0.1 ms count as equal: in this time even a rotation of
-  // 360 degrees per second moves no pixel by half a pixel. A difference of more
-  // than 50 ms is ignored, as it comes from clocks that disagree.
+  // Whether all rows of both images were exposed at the time stamp. Differences
+  // of stamps are ignored below 0.1 ms (half a pixel at 360 degrees per second)
+  // and above 50 ms, as they come from clocks that disagree.
   bool IsOneMoment() const {
     return color_shutter.IsGlobal() && DepthShutter().IsGlobal();
   }

@@ -11,10 +11,9 @@
 
 namespace rgbd_pose {
 
-// Rectifies rolling-shutter frames: resamples them to the images that the same
-// camera with a global shutter would have taken. Used for frames that others
-// are tracked against; code that uses rectified frames needs no shutter model.
-// Not thread-safe; the object reuses its memory.
+// Rectifies rolling-shutter frames that others are tracked against: resamples
+// them to the images that the same camera with a global shutter would have
+// taken. Not thread-safe; the object reuses its memory.
 class FrameRectifier {
  public:
   // The camera of all frames.

@@ -6,32 +6,6 @@
 namespace rgbd_pose {
 namespace {
 
-std::vector<cv::Mat> SharpLevels(const cv::Mat& gray, int levels) {
-  constexpr int kMinSidePx = 8;
-  std::vector<cv::Mat> pyramid = {gray};
-  while (static_cast<int>(pyramid.size()) < levels) {
-    const cv::Mat& finer = pyramid.back();
-    const cv::Size half(finer.cols / 2, finer.rows / 2);
-    if (std::min(half.width, half.height) < kMinSidePx) break;
-    // The last pixel of an odd side is dropped to keep the scale at exactly 2.
-    const cv::Mat even = finer(cv::Rect(0, 0, 2 * half.width, 2 * half.height));
-    cv::Mat coarser;
-    cv::resize(even, coarser, half, 0.0, 0.0, cv::INTER_AREA);
-    pyramid.push_back(coarser);
-  }
-  return pyramid;
-}
-
-std::vector<cv::Mat> Smooth(const std::vector<cv::Mat>& sharp) {
-  constexpr double kSigmaPx = 1.0;
-  std::vector<cv::Mat> smooth(sharp.size());
-  smooth[0] = sharp[0];
-  for (size_t level = 1; level < sharp.size(); ++level) {
-    cv::GaussianBlur(sharp[level], smooth[level], {3, 3}, kSigmaPx);
-  }
-  return smooth;
-}
-
 template <typename Pixel>
 ImageView<Pixel> ViewImage(const cv::Mat& image) {
   return {image.ptr<Pixel>(), image.cols, image.rows,
@@ -40,14 +14,27 @@ ImageView<Pixel> ViewImage(const cv::Mat& image) {
 
 }  // namespace
 
-ImagePyramid::ImagePyramid(const PreparedFrame& frame)
-    : levels(SharpLevels(frame.gray, /*levels=*/6)) {}
+ImagePyramid::ImagePyramid(const PreparedFrame& frame) : levels{frame.gray} {
+  constexpr size_t kMaxLevels = 6;
+  constexpr int kMinSidePx = 8;
+  while (levels.size() < kMaxLevels) {
+    const cv::Mat& finer = levels.back();
+    const cv::Size half(finer.cols / 2, finer.rows / 2);
+    if (std::min(half.width, half.height) < kMinSidePx) break;
+    // The last pixel of an odd side is dropped to keep the scale at exactly 2.
+    const cv::Mat even = finer(cv::Rect(0, 0, 2 * half.width, 2 * half.height));
+    cv::Mat coarser;
+    cv::resize(even, coarser, half, 0.0, 0.0, cv::INTER_AREA);
+    levels.push_back(coarser);
+  }
+}
 
-SmoothPyramid::SmoothPyramid(const PreparedFrame& frame)
-    : levels(Smooth(frame.Derived<ImagePyramid>().levels)) {}
-
-std::vector<cv::Mat> SmoothLevels(const cv::Mat& gray, int levels) {
-  return Smooth(SharpLevels(gray, levels));
+SmoothPyramid::SmoothPyramid(const PreparedFrame& frame) : levels{frame.gray} {
+  constexpr double kSigmaPx = 1.0;
+  const std::vector<cv::Mat>& sharp = frame.Derived<ImagePyramid>().levels;
+  for (size_t level = 1; level < sharp.size(); ++level) {
+    cv::GaussianBlur(sharp[level], levels.emplace_back(), {3, 3}, kSigmaPx);
+  }
 }
 
 Camera CameraOfLevel(const Camera& camera, int level) {

@@ -11,24 +11,19 @@
 namespace rgbd_pose {
 
 // The image pyramid of a frame (PreparedFrame::Derived), 640 x 480 to 20 x 15.
-// Level 0 shares the memory of the image (CV_8UC1). Each further level is half
-// as wide and high as the one before, with the means of 2 x 2 pixels. Levels
-// with a side below 8 pixels are left out.
+// Level 0 shares the memory of the image (CV_8UC1); each further level has the
+// means of 2 x 2 pixels. Levels with a side below 8 pixels are left out.
 struct ImagePyramid {
   explicit ImagePyramid(const PreparedFrame& frame);  // computes all levels
   std::vector<cv::Mat> levels;                        // full resolution first
 };
 
-// The same with all levels but level 0 blurred. For costs that interpolate gray
-// levels: in smooth images interpolation is more accurate, and the costs
-// converge from farther away.
+// The same with all levels but level 0 blurred: for costs, which interpolate
+// smooth images more accurately and converge from farther away.
 struct SmoothPyramid {
   explicit SmoothPyramid(const PreparedFrame& frame);  // computes all levels
   std::vector<cv::Mat> levels;                         // full resolution first
 };
-
-// At most `levels` levels of the smooth pyramid of an image.
-std::vector<cv::Mat> SmoothLevels(const cv::Mat& gray, int levels);
 
 // A view of a frame for direct costs. All images are shared and must outlive
 // it. `pyramid`: of frame.gray; `camera`: of level 0.

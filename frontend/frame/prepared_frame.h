@@ -14,15 +14,13 @@ namespace rgbd_pose {
 
 // A frame with data derived from its gray levels (pyramids, descriptors). Each
 // item is computed once, at the first request, and shared by all copies. The
-// images are shared too and must not change. Nothing that depends on depth is
-// cached: its correction for the capture time depends on the velocity, which
-// may change. Thread-safe.
+// images are shared too and must not change. Nothing derived may depend on
+// depth, as its correction depends on the velocity. Thread-safe.
 class PreparedFrame : public Frame {
  public:
-  PreparedFrame() : PreparedFrame(Frame()) {}
+  PreparedFrame() = default;
   // Shares the images of the frame; nothing is derived yet.
-  explicit PreparedFrame(const Frame& frame)
-      : Frame(frame), derived_(std::make_shared<DerivedData>()) {}
+  explicit PreparedFrame(const Frame& frame) : Frame(frame) {}
 
   // A copy with another velocity, which shares the derived data.
   PreparedFrame WithTwist(const std::optional<Twist>& velocity) const {
@@ -53,7 +51,7 @@ class PreparedFrame : public Frame {
     std::vector<std::any> all;
   };
 
-  std::shared_ptr<DerivedData> derived_;
+  std::shared_ptr<DerivedData> derived_ = std::make_shared<DerivedData>();
 };
 
 }  // namespace rgbd_pose

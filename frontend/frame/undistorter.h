@@ -7,15 +7,13 @@
 
 namespace rgbd_pose {
 
-// Resamples images to a camera without distortion that has the same size, focal
-// lengths and principal point. Pixels outside the input are black, without
-// depth.
+// Resamples images to the same camera without distortion. Pixels outside the
+// input are black, without depth.
 class Undistorter {
  public:
   explicit Undistorter(const Camera& camera);
 
-  // Undistorts colour, grey and depth of a frame. Depth is taken from the
-  // nearest pixel, never interpolated between two surfaces.
+  // Undistorts all images of a frame. Depth is that of the nearest pixel.
   Frame Undistort(const Frame& frame) const;
 
   // The camera of the undistorted frames.

@@ -25,8 +25,7 @@ struct ViewLikeness {
 // Sparse 3D samples of a view, to find out how much of it other views see.
 class ViewOverlap {
  public:
-  // No samples.
-  ViewOverlap() = default;
+  ViewOverlap() = default;  // no samples
 
   // Samples a frame every `step_px` pixels where depth is within limits (m).
   ViewOverlap(const Frame& frame, const Camera& camera, int step_px,

@@ -1,7 +1,5 @@
 #include "frontend/fusion/cloud_fusion.h"
 
-#include "frontend/frame/depth_lookup.h"
-
 namespace rgbd_pose {
 
 std::string FusionOptions::Check() const {
@@ -55,7 +53,7 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
       if (!IsOnSurface(frame.depth, x, y, static_cast<int>(max_step))) continue;
       const cv::Vec3b& bgr = frame.color.at<cv::Vec3b>(y, x);
       cloud_.Add(
-          {rotation * (z * rays[x]) + translation, bgr[2], bgr[1], bgr[0]});
+          {rotation * (z * rays[x]) + translation, {bgr[2], bgr[1], bgr[0]}});
     }
   }
   last_world_from_cam_ = world_from_cam;

@@ -28,10 +28,6 @@ Formatter FormatOf(const std::string& path) {
                    Join(NamesOf(kFormats)));
 }
 
-constexpr uint32_t kGlbMagic = 0x46546C67;  // "glTF"
-constexpr uint32_t kGlbVersion = 2;
-constexpr uint32_t kJson = 0x4E4F534A;    // "JSON"
-constexpr uint32_t kBinary = 0x004E4942;  // "BIN"
 constexpr size_t kHeaderBytes = 12;
 constexpr size_t kChunkHeaderBytes = 8;
 constexpr size_t kPositionBytes = 3 * sizeof(float);
@@ -60,15 +56,11 @@ std::string Binary(const TriangleMesh& mesh) {
     for (const float x : {p.x(), -p.y(), -p.z()}) AppendLittleEndian(x, &bytes);
   }
   for (const ColoredPoint& point : mesh.vertices) {
-    for (const uint8_t value : {point.red, point.green, point.blue}) {
-      AppendLittleEndian(linear[value], &bytes);
-    }
+    for (const uint8_t c : point.color) AppendLittleEndian(linear[c], &bytes);
     AppendLittleEndian(std::numeric_limits<uint16_t>::max(), &bytes);
   }
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
-    for (const int vertex : triangle) {
-      AppendLittleEndian(static_cast<uint32_t>(vertex), &bytes);
-    }
+    for (const int vertex : triangle) AppendLittleEndian(vertex, &bytes);
   }
   return bytes;
 }
@@ -108,10 +100,11 @@ std::string Json(const TriangleMesh& mesh, size_t binary_bytes) {
              mesh.vertices.size(), 3 * mesh.triangles.size());
 }
 
-void AppendChunk(uint32_t type, const std::string& content,
+// `type`: four bytes.
+void AppendChunk(const std::string& type, const std::string& content,
                  std::string* bytes) {
   AppendLittleEndian(static_cast<uint32_t>(content.size()), bytes);
-  AppendLittleEndian(type, bytes);
+  *bytes += type;
   *bytes += content;
 }
 
@@ -122,16 +115,14 @@ std::string FormatGlb(const TriangleMesh& mesh) {
       mesh.triangles.empty() ? std::string() : Binary(mesh);
   std::string json = Json(mesh, binary.size());
   json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string bytes;
-  bytes.reserve(kHeaderBytes + 2 * kChunkHeaderBytes + json.size() +
-                binary.size());
-  AppendLittleEndian(kGlbMagic, &bytes);
-  AppendLittleEndian(kGlbVersion, &bytes);
   const size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
                        (binary.empty() ? 0 : kChunkHeaderBytes + binary.size());
+  std::string bytes = "glTF";
+  bytes.reserve(total);
+  AppendLittleEndian(uint32_t{2}, &bytes);  // version
   AppendLittleEndian(static_cast<uint32_t>(total), &bytes);
-  AppendChunk(kJson, json, &bytes);
-  if (!binary.empty()) AppendChunk(kBinary, binary, &bytes);
+  AppendChunk("JSON", json, &bytes);
+  if (!binary.empty()) AppendChunk({"BIN", 4}, binary, &bytes);
   return bytes;
 }
 
@@ -145,8 +136,6 @@ void RequireMeshFile(const std::string& path) {
 }
 
 std::string FormatMeshPly(const TriangleMesh& mesh) {
-  constexpr size_t kVertexBytes = 3 * sizeof(float) + 3;
-  constexpr size_t kFaceBytes = 3 * sizeof(uint32_t) + 1;
   std::string bytes = Format(
       "ply\n"
       "format binary_little_endian 1.0\n"
@@ -166,19 +155,15 @@ std::string FormatMeshPly(const TriangleMesh& mesh) {
         mesh.triangles.size());
   }
   bytes += "end_header\n";
-  bytes.reserve(bytes.size() + kVertexBytes * mesh.vertices.size() +
-                kFaceBytes * mesh.triangles.size());
+  bytes.reserve(bytes.size() + (kPositionBytes + 3) * mesh.vertices.size() +
+                (kPositionBytes + 1) * mesh.triangles.size());
   for (const ColoredPoint& point : mesh.vertices) {
-    for (int i = 0; i < 3; ++i) AppendLittleEndian(point.position[i], &bytes);
-    for (const uint8_t value : {point.red, point.green, point.blue}) {
-      bytes.push_back(static_cast<char>(value));
-    }
+    for (const float x : point.position) AppendLittleEndian(x, &bytes);
+    bytes.append(point.color.begin(), point.color.end());
   }
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     bytes.push_back(3);
-    for (const int vertex : triangle) {
-      AppendLittleEndian(static_cast<uint32_t>(vertex), &bytes);
-    }
+    for (const int vertex : triangle) AppendLittleEndian(vertex, &bytes);
   }
   return bytes;
 }

@@ -11,8 +11,7 @@ namespace rgbd_pose {
 // .ply or .glb. Throws InputError on failure and for another extension.
 void WriteMesh(const std::string& path, const TriangleMesh& mesh);
 
-// Throws InputError if WriteMesh could not write the file. To be called before
-// a long computation.
+// Throws InputError if WriteMesh would; to be called before long computations.
 void RequireMeshFile(const std::string& path);
 
 // A mesh as a binary glTF 2.0 file (.glb) with unlit colours, as images contain
@@ -25,8 +24,7 @@ std::string FormatGlb(const TriangleMesh& mesh);
 // The PLY Polygon File Format, 1994.)
 std::string FormatMeshPly(const TriangleMesh& mesh);
 
-// Writes a point cloud as such a PLY file without faces, completely or not at
-// all. Throws InputError on failure.
+// Writes a PLY file without faces like WriteMesh, whatever its extension.
 void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
 
 }  // namespace rgbd_pose

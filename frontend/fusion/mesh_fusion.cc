@@ -14,13 +14,11 @@ namespace {
 
 constexpr int kBlockSide = TsdfVolume::kSide;
 
-// Fixed-point scale of stored colours.
-constexpr float kColorSteps = 256.0F;
-
 void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
   for (int i = 0; i < 3; ++i) {
     const auto mean = static_cast<float>(voxel->color[i]);
-    const float seen = kColorSteps * static_cast<float>(bgr[2 - i]);
+    const float seen =
+        DistanceVoxel::kColorSteps * static_cast<float>(bgr[2 - i]);
     voxel->color[i] =
         static_cast<uint16_t>(mean + share * (seen - mean) + 0.5F);
   }
@@ -37,10 +35,9 @@ std::string MeshFusionOptions::Check() const {
     return "max_sigma must be 0 to 1000 m";
   }
   if (threads < 1) return "at least one thread is needed";
-  constexpr double kFar = 1000.0;  // beyond the range of all sensors, m
   const double farthest = std::min(depth.max_depth, max_depth);
-  if (!(depth.min_depth > 0.0) || !(farthest > depth.min_depth) ||
-      !(farthest <= kFar)) {
+  if (!(depth.min_depth > 0.0 && farthest > depth.min_depth &&
+        farthest <= 1000.0)) {
     return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
   return FusionOptions::Check();

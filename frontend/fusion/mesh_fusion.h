@@ -10,15 +10,14 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/frame.h"
 #include "frontend/frame/undistorter.h"
-#include "frontend/fusion/fusion_options.h"
+#include "frontend/fusion/cloud_fusion.h"
 #include "frontend/fusion/surface_mesh.h"
 #include "frontend/fusion/triangle_mesh.h"
 
 namespace rgbd_pose {
 
 struct MeshFusionOptions : FusionOptions {
-  // Larger depths (m) are not used either. Noise spreads each over many voxels:
-  // they would take most of the time and memory for little benefit.
+  // Larger depths (m) are not used either: noise spreads each over many voxels.
   double max_depth = 4.0;
 
   // Truncation distance around the surface: this number of voxels or this
@@ -38,10 +37,9 @@ struct MeshFusionOptions : FusionOptions {
 };
 
 // Fuses the depth images of frames with known poses into a mesh in the world
-// frame of their poses. The mesh is the zero level of a truncated signed
-// distance averaged over all frames (B. Curless & M. Levoy, A Volumetric Method
-// for Building Complex Models from Range Images, SIGGRAPH 1996). Deterministic
-// for the same frames in the same order.
+// frame of their poses: the zero level of a truncated signed distance averaged
+// over all frames (B. Curless & M. Levoy, A Volumetric Method for Building
+// Complex Models from Range Images, SIGGRAPH 1996). Deterministic.
 class MeshFusion {
  public:
   // The options must pass MeshFusionOptions::Check.
@@ -54,7 +52,9 @@ class MeshFusion {
   TriangleMesh Mesh() const;
 
   // Memory used by the volume, bytes.
-  size_t MemoryBytes() const { return volume_.MemoryBytes(); }
+  size_t MemoryBytes() const {
+    return volume_.size() * sizeof(TsdfVolume::Block);
+  }
 
  private:
   // Parameters that depend on a depth.
@@ -63,8 +63,7 @@ class MeshFusion {
     float weight;      // 1 / m^2
   };
 
-  // The key of a block seen by a frame, and whether the surface is too far away
-  // to be in the block.
+  // The key of a block in view, and whether the surface is too far from it.
   using SeenBlock = std::pair<uint64_t, bool>;
 
   static constexpr int kDepthStepsPerMetre = 512;

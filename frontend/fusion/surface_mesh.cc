@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "frontend/fusion/voxel_key.h"
 
@@ -12,10 +11,13 @@ namespace {
 constexpr int kSide = TsdfVolume::kSide;
 constexpr int kNone = -1;
 
-// The eight corners of a voxel; the highest bit of the index is x.
+// The eight corners of a voxel.
 using Corners = std::array<DistanceVoxel, 8>;
 
-int Bit(int corner, int axis) { return corner >> (2 - axis) & 1; }
+// The place of a corner; the highest bit of the index is x.
+Eigen::Vector3i CornerAt(int index) {
+  return {index >> 2 & 1, index >> 1 & 1, index & 1};
+}
 
 class Mesher {
  public:
@@ -33,28 +35,19 @@ class Mesher {
   }
 
  private:
-  using VertexOfVoxel = std::array<int, TsdfVolume::kBlockSize>;
-
   // A block and its neighbours towards higher (sign 1) or lower (-1)
   // coordinates; kNone for missing blocks.
   std::array<int, 8> Neighbours(int index, int sign) const {
     const Eigen::Vector3i here = VoxelOfKey(volume_.key(index));
     std::array<int, 8> neighbours;
     for (int n = 0; n < 8; ++n) {
-      neighbours[n] = volume_.Find(VoxelKey(
-          here + sign * Eigen::Vector3i(Bit(n, 0), Bit(n, 1), Bit(n, 2))));
+      neighbours[n] = volume_.Find(VoxelKey(here + sign * CornerAt(n)));
     }
     return neighbours;
   }
 
   void AddVertices(int index) {
     const std::array<int, 8> around = Neighbours(index, 1);
-    const auto corner_at = [&](int x, int y, int z) -> DistanceVoxel {
-      const int n = around[x / kSide << 2 | y / kSide << 1 | z / kSide];
-      if (n == kNone) return {};
-      const int place = TsdfVolume::PlaceOf({x % kSide, y % kSide, z % kSide});
-      return volume_.block(n)[place];
-    };
     const Eigen::Vector3i first = kSide * VoxelOfKey(volume_.key(index));
     Corners corners;
     for (int place = 0; place < TsdfVolume::kBlockSize; ++place) {
@@ -62,17 +55,19 @@ class Mesher {
       bool known = true;
       int behind = 0;
       for (int c = 0; c < 8 && known; ++c) {
-        corners[c] = corner_at(voxel[0] + Bit(c, 0), voxel[1] + Bit(c, 1),
-                               voxel[2] + Bit(c, 2));
+        const Eigen::Vector3i at = voxel + CornerAt(c);
+        const Eigen::Vector3i block = at / kSide;
+        const int n = around[block[0] << 2 | block[1] << 1 | block[2]];
+        corners[c] = {};
+        if (n != kNone) corners[c] = volume_.block(n)[TsdfVolume::PlaceOf(at)];
         known = corners[c].weight >= min_weight_;
         behind += corners[c].distance < 0.0F;
       }
       if (!known || behind == 0 || behind == 8) continue;
-      if (vertices_[index] == nullptr) {
-        vertices_[index] = std::make_unique<VertexOfVoxel>();
-        vertices_[index]->fill(kNone);
+      if (vertices_[index].empty()) {
+        vertices_[index].assign(TsdfVolume::kBlockSize, kNone);
       }
-      (*vertices_[index])[place] = static_cast<int>(mesh_.vertices.size());
+      vertices_[index][place] = static_cast<int>(mesh_.vertices.size());
       mesh_.vertices.push_back(Vertex(first + voxel, corners));
     }
   }
@@ -86,7 +81,7 @@ class Mesher {
         const int other = c | 4 >> axis;
         const float a = corners[c].distance, b = corners[other].distance;
         if (other == c || (a < 0.0F) == (b < 0.0F)) continue;
-        Eigen::Vector3f at(Bit(c, 0), Bit(c, 1), Bit(c, 2));
+        Eigen::Vector3f at = CornerAt(c).cast<float>();
         at[axis] += a / (a - b);
         sum += at;
         ++crossed;
@@ -95,8 +90,7 @@ class Mesher {
     const Eigen::Vector3f at = sum / static_cast<float>(crossed);
     const Eigen::Vector3d position =
         voxel_size_ * (voxel.cast<double>() + at.cast<double>());
-    const std::array<uint8_t, 3> color = ColorAt(at, corners);
-    return {position.cast<float>(), color[0], color[1], color[2]};
+    return {position.cast<float>(), ColorAt(at, corners)};
   }
 
   // The mean colour of the corners, weighted by their weight and proximity.
@@ -107,48 +101,43 @@ class Mesher {
     for (int c = 0; c < 8; ++c) {
       float share = corners[c].weight;
       for (int axis = 0; axis < 3; ++axis) {
-        share *= Bit(c, axis) == 1 ? at[axis] : 1.0F - at[axis];
+        share *= CornerAt(c)[axis] == 1 ? at[axis] : 1.0F - at[axis];
       }
       for (int i = 0; i < 3; ++i) sum[i] += share * corners[c].color[i];
       total += share;
     }
-    const auto mean = [&](int i) {
-      constexpr float kSteps = 256.0F;
-      return static_cast<uint8_t>(
-          std::min(255.0F, std::round(sum[i] / (kSteps * total))));
-    };
-    return {mean(0), mean(1), mean(2)};
+    std::array<uint8_t, 3> mean;
+    for (int i = 0; i < 3; ++i) {
+      mean[i] = static_cast<uint8_t>(std::min(
+          255.0F, std::round(sum[i] / (DistanceVoxel::kColorSteps * total))));
+    }
+    return mean;
   }
 
   // Each grid edge is shared by four voxels, whose vertices form a quad.
   void AddTriangles(int index) {
-    if (vertices_[index] == nullptr) return;
+    if (vertices_[index].empty()) return;
     const std::array<int, 8> below = Neighbours(index, -1);
     const auto vertex_at = [&](const Eigen::Vector3i& voxel) {
       int neighbour = 0;
-      Eigen::Vector3i in_block = voxel;
       for (int axis = 0; axis < 3; ++axis) {
-        if (voxel[axis] >= 0) continue;
-        neighbour |= 4 >> axis;
-        in_block[axis] += kSide;
+        if (voxel[axis] < 0) neighbour |= 4 >> axis;
       }
       const int n = below[neighbour];
-      if (n == kNone || vertices_[n] == nullptr) return kNone;
-      return (*vertices_[n])[TsdfVolume::PlaceOf(in_block)];
+      if (n == kNone || vertices_[n].empty()) return kNone;
+      return vertices_[n][TsdfVolume::PlaceOf(voxel)];
     };
     const std::array<int, 8> beyond = Neighbours(index, 1);
     for (int place = 0; place < TsdfVolume::kBlockSize; ++place) {
-      if ((*vertices_[index])[place] == kNone) continue;
+      if (vertices_[index][place] == kNone) continue;
       const Eigen::Vector3i voxel = TsdfVolume::PointAt(place);
       const float here = volume_.block(index)[place].distance;
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::Vector3i end = voxel;
         ++end[axis];
-        const bool is_beyond = end[axis] == kSide;
-        if (is_beyond) end[axis] = 0;
         // The block exists: the voxel has a vertex, so all corners are known.
         const TsdfVolume::Block& block =
-            volume_.block(beyond[is_beyond ? 4 >> axis : 0]);
+            volume_.block(beyond[end[axis] == kSide ? 4 >> axis : 0]);
         const float there = block[TsdfVolume::PlaceOf(end)].distance;
         if ((here < 0.0F) == (there < 0.0F)) continue;
         Eigen::Vector3i b = Eigen::Vector3i::Zero(), c = b;
@@ -162,8 +151,7 @@ class Mesher {
     }
   }
 
-  // At the ends of the surface, some voxels around a vertex's edges are
-  // unknown.
+  // At the ends of the surface, some voxels around edges are unknown.
   void DropUnusedVertices() {
     std::vector<int> places(mesh_.vertices.size(), kNone);
     for (const Eigen::Vector3i& triangle : mesh_.triangles) {
@@ -197,7 +185,8 @@ class Mesher {
   const TsdfVolume& volume_;
   const double voxel_size_;
   const float min_weight_;
-  std::vector<std::unique_ptr<VertexOfVoxel>> vertices_;  // by block
+  // Of the voxels of each block; empty for a block without vertices.
+  std::vector<std::vector<int>> vertices_;
   TriangleMesh mesh_;
 };
 
@@ -207,8 +196,6 @@ struct Cube {
   Eigen::Vector3d color = Eigen::Vector3d::Zero();
   int count = 0;
 };
-
-uint8_t Round(double value) { return static_cast<uint8_t>(std::lround(value)); }
 
 TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
   std::unordered_map<uint64_t, int> index;  // only for lookup
@@ -221,16 +208,18 @@ TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
         index.emplace(key, static_cast<int>(cubes.size())).first->second;
     if (at == static_cast<int>(cubes.size())) cubes.emplace_back();
     cubes[at].position += vertex.position.cast<double>();
-    cubes[at].color += Eigen::Vector3d(vertex.red, vertex.green, vertex.blue);
+    for (int i = 0; i < 3; ++i) cubes[at].color[i] += vertex.color[i];
     ++cubes[at].count;
     cube_of.push_back(at);
   }
   TriangleMesh coarse;
   for (const Cube& cube : cubes) {
-    const Eigen::Vector3d color = cube.color / cube.count;
-    coarse.vertices.push_back({(cube.position / cube.count).cast<float>(),
-                               Round(color[0]), Round(color[1]),
-                               Round(color[2])});
+    ColoredPoint& vertex = coarse.vertices.emplace_back();
+    vertex.position = (cube.position / cube.count).cast<float>();
+    for (int i = 0; i < 3; ++i) {
+      vertex.color[i] =
+          static_cast<uint8_t>(std::lround(cube.color[i] / cube.count));
+    }
   }
   std::vector<std::array<int, 3>> triangles;
   for (const Eigen::Vector3i& triangle : mesh.triangles) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "frontend/fusion/triangle_mesh.h"
@@ -13,42 +14,42 @@ namespace rgbd_pose {
 
 // The data at a corner of voxels.
 struct DistanceVoxel {
+  static constexpr float kColorSteps = 256.0F;  // of colours in fixed point
+
   float distance = 0.0F;               // to the surface, m; > 0 in front of it
   float weight = 0.0F;                 // 1 / m^2; 0: no data
-  std::array<uint16_t, 3> color = {};  // red, green, blue, in 1/256
+  std::array<uint16_t, 3> color = {};  // red, green, blue, in 1/kColorSteps
 };
 
-// Distances to a surface on a grid, stored in sparse blocks: memory grows with
-// the area of the surface. Grid points are at integer multiples of the voxel
-// size from the origin, up to 2^20 blocks away.
+// Distances to a surface in sparse blocks of a grid. Grid points are at integer
+// multiples of the voxel size from the origin, up to 2^20 blocks away.
 class TsdfVolume {
  public:
   // Layout of a block: z is the fastest index, then y, then x.
   static constexpr int kSide = 8;
   static constexpr int kBlockSize = kSide * kSide * kSide;
   using Block = std::array<DistanceVoxel, kBlockSize>;
+  // The place in its block of a grid point, whatever block it is in.
   static int PlaceOf(const Eigen::Vector3i& point) {
-    return (point.x() * kSide + point.y()) * kSide + point.z();
+    constexpr int kMask = kSide - 1;
+    return ((point.x() & kMask) * kSide + (point.y() & kMask)) * kSide +
+           (point.z() & kMask);
   }
   static Eigen::Vector3i PointAt(int place) {
     return {place / (kSide * kSide), place / kSide % kSide, place % kSide};
   }
 
-  // The block of a key (voxel_key.h), created if missing. The pointer stays
-  // valid.
+  // The block of a key (voxel_key.h), created if missing; stays in place.
   Block* FindOrInsert(uint64_t key) {
     const auto [place, is_new] = index_.emplace(key, size());
-    if (is_new) {
-      keys_.push_back(key);
-      blocks_.push_back(std::make_unique<Block>());
-    }
-    return blocks_[place->second].get();
+    if (is_new) blocks_.emplace_back(key, std::make_unique<Block>());
+    return blocks_[place->second].second.get();
   }
 
   // The number of blocks, and access to them in the order of their creation.
   int size() const { return static_cast<int>(blocks_.size()); }
-  uint64_t key(int index) const { return keys_[index]; }
-  const Block& block(int index) const { return *blocks_[index]; }
+  uint64_t key(int index) const { return blocks_[index].first; }
+  const Block& block(int index) const { return *blocks_[index].second; }
 
   // The index of the block of a key, or -1.
   int Find(uint64_t key) const {
@@ -56,12 +57,8 @@ class TsdfVolume {
     return place == index_.end() ? -1 : place->second;
   }
 
-  // Memory used by the blocks, bytes.
-  size_t MemoryBytes() const { return blocks_.size() * sizeof(Block); }
-
  private:
-  std::vector<uint64_t> keys_;
-  std::vector<std::unique_ptr<Block>> blocks_;
+  std::vector<std::pair<uint64_t, std::unique_ptr<Block>>> blocks_;
   std::unordered_map<uint64_t, int> index_;  // only for lookup
 };
 
@@ -73,9 +70,8 @@ class TsdfVolume {
 TriangleMesh SurfaceMesh(const TsdfVolume& volume, double voxel_size,
                          float min_weight);
 
-// Simplifies a surface to at most `max_triangles` (> 0) triangles. Vertices in
-// the same cube are merged, and degenerate triangles are removed. The size of
-// cubes grows from `voxel_size` (m) until the limit is met.
+// Simplifies a surface to at most `max_triangles` (> 0) triangles by merging
+// the vertices in cubes of `voxel_size` (m), or larger ones if needed.
 TriangleMesh SimplifyMesh(const TriangleMesh& mesh, float voxel_size,
                           size_t max_triangles);
 

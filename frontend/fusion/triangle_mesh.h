@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,10 +10,7 @@ namespace rgbd_pose {
 // A point of a map with its colour.
 struct ColoredPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  // m
-
-  uint8_t red = 0;
-  uint8_t green = 0;
-  uint8_t blue = 0;
+  std::array<uint8_t, 3> color = {};                   // red, green, blue
 };
 
 // A coloured surface.

@@ -6,15 +6,6 @@
 #include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
-namespace {
-
-constexpr int kFirstSlotBits = 10;
-
-uint8_t Mean(uint32_t sum, uint32_t count) {
-  return static_cast<uint8_t>((sum + count / 2) / count);
-}
-
-}  // namespace
 
 VoxelCloud::VoxelCloud(float voxel_size)
     : voxel_size_(voxel_size),
@@ -33,11 +24,8 @@ void VoxelCloud::Add(const ColoredPoint& point) {
   const uint64_t key = VoxelKey(cell);
   Voxel* voxel = FindOrInsert(key);
   if (voxel->count == kMaxCount) return;
-  const Eigen::Vector3f center = Center(key);
-  for (int i = 0; i < 3; ++i) voxel->offset[i] += point.position[i] - center[i];
-  voxel->color[0] += point.red;
-  voxel->color[1] += point.green;
-  voxel->color[2] += point.blue;
+  voxel->offset += point.position - Center(key);
+  for (int i = 0; i < 3; ++i) voxel->color[i] += point.color[i];
   ++voxel->count;
 }
 
@@ -45,11 +33,14 @@ std::vector<ColoredPoint> VoxelCloud::Points() const {
   std::vector<ColoredPoint> points;
   points.reserve(voxels_.size());
   for (const Voxel& voxel : voxels_) {
-    const Eigen::Map<const Eigen::Vector3f> offset(voxel.offset);
-    points.push_back(
-        {Center(voxel.key) + offset / static_cast<float>(voxel.count),
-         Mean(voxel.color[0], voxel.count), Mean(voxel.color[1], voxel.count),
-         Mean(voxel.color[2], voxel.count)});
+    const uint32_t count = voxel.count;
+    ColoredPoint& point = points.emplace_back();
+    point.position =
+        Center(voxel.key) + voxel.offset / static_cast<float>(count);
+    for (int i = 0; i < 3; ++i) {
+      point.color[i] =
+          static_cast<uint8_t>((voxel.color[i] + count / 2) / count);
+    }
   }
   return points;
 }
@@ -78,21 +69,24 @@ VoxelCloud::Voxel* VoxelCloud::FindOrInsert(uint64_t key) {
   if (last_ < voxels_.size() && voxels_[last_].key == key) {
     return &voxels_[last_];
   }
-  size_t slot = FirstSlot(key);
-  while (slots_[slot] != 0) {
-    last_ = slots_[slot] - 1;
-    if (voxels_[last_].key == key) return &voxels_[last_];
-    slot = (slot + 1) & (slots_.size() - 1);
+  uint32_t* slot = &slots_[SlotOf(key)];
+  if (*slot == 0) {
+    voxels_.push_back({key});
+    *slot = static_cast<uint32_t>(voxels_.size());
   }
-  last_ = voxels_.size();
-  voxels_.push_back({key, {}, {}, 0});
-  slots_[slot] = static_cast<uint32_t>(voxels_.size());
+  last_ = *slot - 1;
   // At most half full: a search takes 1.5 probes on average.
-  if (2 * voxels_.size() > slots_.size()) Grow();
+  if (2 * voxels_.size() > slots_.size()) {
+    slots_.assign(2 * slots_.size(), 0);
+    --hash_shift_;
+    for (size_t i = 0; i < voxels_.size(); ++i) {
+      slots_[SlotOf(voxels_[i].key)] = static_cast<uint32_t>(i + 1);
+    }
+  }
   return &voxels_[last_];
 }
 
-size_t VoxelCloud::FirstSlot(uint64_t key) const {
+size_t VoxelCloud::SlotOf(uint64_t key) const {
   // Knuth's multiplicative hashing: 2^64 over the golden ratio. It hashes
   // blocks of 2 x 2 x 4 cubes, whose slots share a cache line, because most
   // lookups are next to the previous one.
@@ -101,17 +95,11 @@ size_t VoxelCloud::FirstSlot(uint64_t key) const {
   const uint64_t in_block = (key >> (2 * kVoxelKeyBits) & 1) << 3 |
                             (key >> kVoxelKeyBits & 1) << 2 | (key & 3);
   const uint64_t hash = (key & ~kInBlock) * 0x9E3779B97F4A7C15ULL;
-  return ((hash >> hash_shift_) & ~uint64_t{15}) | in_block;
-}
-
-void VoxelCloud::Grow() {
-  slots_.assign(2 * slots_.size(), 0);
-  --hash_shift_;
-  for (size_t i = 0; i < voxels_.size(); ++i) {
-    size_t slot = FirstSlot(voxels_[i].key);
-    while (slots_[slot] != 0) slot = (slot + 1) & (slots_.size() - 1);
-    slots_[slot] = static_cast<uint32_t>(i + 1);
+  size_t slot = ((hash >> hash_shift_) & ~uint64_t{15}) | in_block;
+  while (slots_[slot] != 0 && voxels_[slots_[slot] - 1].key != key) {
+    slot = (slot + 1) & (slots_.size() - 1);
   }
+  return slot;
 }
 
 }  // namespace rgbd_pose

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,20 +10,17 @@
 namespace rgbd_pose {
 
 // Merges points in cubes of one size. Only the mean position and colour of each
-// non-empty cube are stored: memory grows with the area of the surface, not the
-// number of points. Deterministic for the same points in the same order.
+// non-empty cube are stored. Deterministic for the same points in this order.
 class VoxelCloud {
  public:
   // The side of a cube in metres; must be > 0.
   explicit VoxelCloud(float voxel_size);
 
-  // Ignores points that are farther than 2^20 cubes from the origin or not
-  // finite.
+  // Ignores points farther than 2^20 cubes from the origin or not finite.
   void Add(const ColoredPoint& point);
 
   // The number of non-empty cubes.
   int size() const { return static_cast<int>(voxels_.size()); }
-  bool empty() const { return voxels_.empty(); }
 
   // One point per cube, in the order of the first points in the cubes.
   std::vector<ColoredPoint> Points() const;
@@ -35,18 +33,18 @@ class VoxelCloud {
   struct Voxel {
     uint64_t key;
     // Sums; positions are relative to the centre of the cube.
-    float offset[3];
-    uint32_t color[3];
-    uint32_t count;
+    Eigen::Vector3f offset = Eigen::Vector3f::Zero();
+    std::array<uint32_t, 3> color = {};
+    uint32_t count = 0;
   };
 
   // Further points of a cube are not added: the sums would lose accuracy.
   static constexpr uint32_t kMaxCount = 1U << 20;
+  static constexpr int kFirstSlotBits = 10;
 
   Eigen::Vector3f Center(uint64_t key) const;
   Voxel* FindOrInsert(uint64_t key);
-  size_t FirstSlot(uint64_t key) const;
-  void Grow();
+  size_t SlotOf(uint64_t key) const;  // the one with the key, or a free one
 
   float voxel_size_;
   float voxels_per_metre_;

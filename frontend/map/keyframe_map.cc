@@ -26,22 +26,6 @@ bool IsCovariance(const MotionMatrix& matrix) {
          cholesky.matrixLLT().allFinite();
 }
 
-std::string CheckEdge(const RelativePose& edge, const std::set<int>& ids) {
-  for (const int id : {edge.ref, edge.cur}) {
-    if (ids.count(id) == 0) {
-      return "there is no keyframe " + std::to_string(id);
-    }
-  }
-  if (edge.ref == edge.cur) return "it must connect two different keyframes";
-  if (!IsMotion(edge.cur_from_ref)) {
-    return "the motion must be finite and its quaternion of unit length";
-  }
-  if (!IsCovariance(edge.covariance)) {
-    return "the covariance must be symmetric and positive definite";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string KeyframeMap::Check() const {
@@ -59,10 +43,22 @@ std::string KeyframeMap::Check() const {
     if (!wrong_images.empty()) return name + wrong_images;
   }
   for (const RelativePose& edge : edges) {
-    const std::string wrong = CheckEdge(edge, ids);
-    if (!wrong.empty()) {
-      return Format("edge from keyframe %d to %d: ", edge.ref, edge.cur) +
-             wrong;
+    const std::string name =
+        Format("edge from keyframe %d to %d: ", edge.ref, edge.cur);
+    for (const int id : {edge.ref, edge.cur}) {
+      if (ids.count(id) == 0) {
+        return name + "there is no keyframe " + std::to_string(id);
+      }
+    }
+    if (edge.ref == edge.cur) {
+      return name + "it must connect two different keyframes";
+    }
+    if (!IsMotion(edge.cur_from_ref)) {
+      return name +
+             "the motion must be finite and its quaternion of unit length";
+    }
+    if (!IsCovariance(edge.covariance)) {
+      return name + "the covariance must be symmetric and positive definite";
     }
   }
   return "";

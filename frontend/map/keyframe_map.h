@@ -16,10 +16,9 @@ struct KeyframeMap {
   std::vector<Keyframe> keyframes;  // compressed, in any order
   std::vector<RelativePose> edges;  // ref and cur are keyframe ids
 
-  // A one-line description of an error, or empty. Errors are duplicate keyframe
-  // ids, images of another size than the camera's, edges to missing keyframes,
-  // values that are not finite, and covariances that are not symmetric and
-  // positive definite.
+  // A one-line description of an error, or empty: duplicate ids, images of
+  // another size than the camera's, edges to missing keyframes, values that are
+  // not finite, covariances that are not symmetric and positive definite.
   std::string Check() const;
 
   // A one-line description of a difference between `other` and the camera of

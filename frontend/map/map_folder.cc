@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <vector>
 
@@ -21,26 +22,18 @@ namespace fs = std::filesystem;
 constexpr char kIndex[] = "map.txt";
 constexpr char kImageType[] = ".png";
 
-// Locks a folder for this process. The lock ends with the process in any case.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    // On file systems without locks, this continues without one.
-    if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      close(file_);
-      throw InputError(folder.string() +
-                       ": another program is saving a map here; wait for it or "
-                       "choose another folder");
-    }
+// Locks a folder until the result is destroyed or the process ends.
+std::shared_ptr<void> LockFolder(const fs::path& folder) {
+  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  std::shared_ptr<void> lock(nullptr, [file](void*) { close(file); });
+  // On file systems without locks, this continues without one.
+  if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    throw InputError(folder.string() +
+                     ": another program is saving a map here; wait for it or "
+                     "choose another folder");
   }
-  ~FolderLock() { close(file_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  const int file_;
-};
+  return lock;
+}
 
 // Whether a file is an image of a map, complete or still being written.
 bool IsImage(const fs::path& file) {
@@ -66,11 +59,9 @@ void MakeFolder(const fs::path& folder) {
 void RequireNoOtherThings(const fs::path& folder) {
   if (fs::exists(folder / kIndex)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path& file = entry.path();
     // Left by a program that was killed before its first map was complete.
-    if (IsImage(entry.path()) ||
-        entry.path().filename() == TemporaryPath(kIndex)) {
-      continue;
-    }
+    if (IsImage(file) || file.filename() == TemporaryPath(kIndex)) continue;
     throw InputError(folder.string() +
                      ": contains files that are not part of a map; choose an "
                      "empty or new folder");
@@ -90,18 +81,15 @@ std::string SaveImage(const fs::path& folder, const PngBytes& image) {
 }
 
 void Save(const fs::path& folder, const KeyframeMap& map) {
-  MapIndex index = {map, {}};
   std::set<std::string> used;
   for (const Keyframe& keyframe : map.keyframes) {
-    const StoredImages& images = keyframe.images;
-    used.insert(SaveImage(folder, *images.gray));
-    used.insert(SaveImage(folder, *images.depth));
-    index.images.push_back({images.gray->checksum, images.depth->checksum});
+    used.insert(SaveImage(folder, *keyframe.images.gray));
+    used.insert(SaveImage(folder, *keyframe.images.depth));
   }
   // The images must be on disk before the index that names them. Images of the
   // old index must stay until the new index has replaced it.
   SyncFolder(folder.string());
-  WriteFileAtomically((folder / kIndex).string(), FormatMapIndex(index),
+  WriteFileAtomically((folder / kIndex).string(), FormatMapIndex(map),
                       Durability::kPowerLoss);
   SyncFolder(folder.string());
   std::vector<fs::path> unused;
@@ -134,14 +122,14 @@ std::shared_ptr<const PngBytes> LoadImage(const fs::path& folder,
 
 KeyframeMap LoadIndexed(const fs::path& folder, const std::string& text) {
   const std::string path = (folder / kIndex).string();
-  MapIndex index = ParseMapIndex(text, path);
-  for (size_t i = 0; i < index.images.size(); ++i) {
-    StoredImages& images = index.map.keyframes[i].images;
-    images.gray = LoadImage(folder, index.images[i].gray);
-    images.depth = LoadImage(folder, index.images[i].depth);
+  KeyframeMap map = ParseMapIndex(text, path);
+  for (Keyframe& keyframe : map.keyframes) {
+    for (auto* image : {&keyframe.images.gray, &keyframe.images.depth}) {
+      *image = LoadImage(folder, (*image)->checksum);
+    }
   }
-  RequireSound(index.map.Check(), path + ": ");
-  return std::move(index.map);
+  RequireSound(map.Check(), path + ": ");
+  return map;
 }
 
 // Runs `call` with the folder created, locked and found to be a map's. Converts
@@ -150,7 +138,7 @@ template <typename Call>
 void InMapFolder(const std::string& folder, Call call) {
   try {
     MakeFolder(folder);
-    const FolderLock lock(folder);
+    const std::shared_ptr<void> lock = LockFolder(folder);
     RequireNoOtherThings(folder);
     call();
   } catch (const fs::filesystem_error& error) {

@@ -17,8 +17,7 @@ namespace rgbd_pose {
 // but a map, or is being saved to by another program.
 void SaveMap(const std::string& folder, const KeyframeMap& map);
 
-// Creates the folder. Throws InputError if SaveMap could not save to it. To be
-// called before a long computation.
+// Creates the folder. Throws as SaveMap would, but before a long computation.
 void RequireMapFolder(const std::string& folder);
 
 // Loads a map with exactly the saved numbers and images. Throws InputError if

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -24,44 +26,37 @@ constexpr char kColumns[] =
 constexpr char kRational[] = "rational";
 constexpr char kEquidistant[] = "equidistant";
 
-// Writes the words of a line.
-class LineWriter {
- public:
-  LineWriter(const char* kind, std::string* text) : text_(*text) {
-    text_ += kind;
-  }
-  ~LineWriter() { text_ += '\n'; }
-  LineWriter(const LineWriter&) = delete;
-  LineWriter& operator=(const LineWriter&) = delete;
+using Image = std::shared_ptr<const PngBytes>;
 
-  void Word(const std::string& word) { text_ += ' ' + word; }
+// Writes the words of a line.
+struct LineWriter {
+  std::string text;  // starts with the kind of the line
+
+  void Word(const std::string& word) { text += ' ' + word; }
   void Integer(const int* value) { Word(std::to_string(*value)); }
   void Number(const double* value) { Word(ShortNumber(*value)); }
-  void ImageName(const std::string* name) { Word(*name); }
-
- private:
-  std::string& text_;
+  void ImageName(const Image* image) { Word((*image)->checksum); }
 };
 
 // Reads the words of a line one after the other.
-class LineReader {
- public:
-  LineReader(const TextLine& line, const std::string& path)
-      : line_(line), path_(path) {}
+struct LineReader {
+  const TextLine& line;
+  const std::string& path;
+  size_t next = 1;
 
   [[noreturn]] void Fail(const std::string& what) const {
-    throw InputError(path_, line_.number, what);
+    throw InputError(path, line.number, what);
   }
   void Require(size_t words) const {
-    if (line_.words.size() == words) return;
+    if (line.words.size() == words) return;
     Fail("a line '" + Kind() + "' must have " + std::to_string(words) +
-         " words, this one has " + std::to_string(line_.words.size()));
+         " words, this one has " + std::to_string(line.words.size()));
   }
-  const std::string& Kind() const { return line_.words[0]; }
-  size_t Count() const { return line_.words.size(); }
-  const std::string& Word() { return line_.words[next_++]; }
+  const std::string& Kind() const { return line.words[0]; }
+  size_t Count() const { return line.words.size(); }
+  const std::string& Word() { return line.words[next++]; }
   void Number(double* value) {
-    *value = ParseNumber(Word(), path_, line_.number, "a " + Kind());
+    *value = ParseNumber(Word(), path, line.number, "a " + Kind());
   }
   void Integer(int* integer) {
     double value = 0.0;
@@ -69,44 +64,36 @@ class LineReader {
     constexpr double kMin = std::numeric_limits<int>::min();
     constexpr double kMax = std::numeric_limits<int>::max();
     if (value != std::floor(value) || value < kMin || value > kMax) {
-      Fail("'" + line_.words[next_ - 1] + "' must be an integer");
+      Fail("'" + line.words[next - 1] + "' must be an integer");
     }
     *integer = static_cast<int>(value);
   }
-  void ImageName(std::string* name) {
-    *name = Word();
-    if (!IsImageName(*name)) {
-      Fail("'" + *name + "' must be an image's checksum");
-    }
+  void ImageName(Image* image) {
+    const std::string& name = Word();
+    if (!IsImageName(name)) Fail("'" + name + "' must be an image's checksum");
+    *image = std::make_shared<const PngBytes>("", name);
   }
-
- private:
-  const TextLine& line_;
-  const std::string& path_;
-  size_t next_ = 1;
 };
 
-// What follows are the words of each line in their order: a LineWriter writes
-// them, a LineReader reads them.
+// The words of each line in their order, for a LineWriter or a LineReader.
 
-// Does not call the constructor of Rigid3d when reading: it might change the
-// last digit.
+// Without the constructor of Rigid3d, which might change the last digit.
 template <typename Line, typename Rigid>
 void PassMotion(Line* line, Rigid* motion) {
   for (int i = 0; i < 3; ++i) line->Number(&motion->translation[i]);
   for (int i = 0; i < 4; ++i) line->Number(&motion->rotation.coeffs()[i]);
 }
 
-template <typename Line, typename Node, typename Names>
-void PassKeyframe(Line* line, Node* keyframe, Names* images) {
+template <typename Line, typename Node>
+void PassKeyframe(Line* line, Node* keyframe) {
   line->Integer(&keyframe->id);
   line->Integer(&keyframe->segment);
   line->Number(&keyframe->images.timestamp);
   line->Number(&keyframe->images.depth_delay);
   line->Number(&keyframe->images.depth_scale);
   PassMotion(line, &keyframe->world_from_cam);
-  line->ImageName(&images->gray);
-  line->ImageName(&images->depth);
+  line->ImageName(&keyframe->images.gray);
+  line->ImageName(&keyframe->images.depth);
 }
 
 template <typename Line, typename Edge>
@@ -135,8 +122,8 @@ void ReadCamera(LineReader* line, Camera* camera) {
   if (lens == kEquidistant) camera->lens_model = LensModel::kEquidistant;
 }
 
-void WriteCamera(const Camera& camera, std::string* text) {
-  LineWriter line("camera", text);
+std::string FormatCamera(const Camera& camera) {
+  LineWriter line = {"camera"};
   line.Integer(&camera.width);
   line.Integer(&camera.height);
   // The long form is used if the short one cannot express the lens.
@@ -148,6 +135,7 @@ void WriteCamera(const Camera& camera, std::string* text) {
     line.Number(&(camera.*kCameraParameters[i].value));
   }
   if (!is_usual) line.Word(is_equidistant ? kEquidistant : kRational);
+  return line.text + '\n';
 }
 
 // Checks the first and the last line of a text and returns it without the last.
@@ -185,45 +173,45 @@ bool IsImageName(std::string_view word) {
          word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
-std::string FormatMapIndex(const MapIndex& index) {
+std::string FormatMapIndex(const KeyframeMap& map) {
   std::string text;
   ((text += kMagic) += kVersion) += '\n';
-  text += kColumns;
-  WriteCamera(index.map.camera, &text);
-  for (size_t i = 0; i < index.map.keyframes.size(); ++i) {
-    LineWriter line("keyframe", &text);
-    PassKeyframe(&line, &index.map.keyframes[i], &index.images[i]);
+  text += kColumns + FormatCamera(map.camera);
+  for (const Keyframe& keyframe : map.keyframes) {
+    LineWriter line = {"keyframe"};
+    PassKeyframe(&line, &keyframe);
+    text += line.text + '\n';
   }
-  for (const RelativePose& edge : index.map.edges) {
-    LineWriter line("edge", &text);
+  for (const RelativePose& edge : map.edges) {
+    LineWriter line = {"edge"};
     PassEdge(&line, &edge);
+    text += line.text + '\n';
   }
   return text + ChecksumLine(text);
 }
 
-MapIndex ParseMapIndex(std::string_view text, const std::string& path) {
+KeyframeMap ParseMapIndex(std::string_view text, const std::string& path) {
   const std::vector<TextLine> lines = SplitTextTable(Unseal(text, path));
-  MapIndex index;
+  KeyframeMap map;
   for (size_t i = 1; i < lines.size(); ++i) {
-    LineReader line(lines[i], path);
+    LineReader line = {lines[i], path};
     if ((i == 1) != (line.Kind() == "camera")) {
       line.Fail("there must be one camera line, before all others");
     }
     if (line.Kind() == "camera") {
-      ReadCamera(&line, &index.map.camera);
+      ReadCamera(&line, &map.camera);
     } else if (line.Kind() == "keyframe") {
       line.Require(15);
-      PassKeyframe(&line, &index.map.keyframes.emplace_back(),
-                   &index.images.emplace_back());
+      PassKeyframe(&line, &map.keyframes.emplace_back());
     } else if (line.Kind() == "edge") {
       line.Require(46);
-      PassEdge(&line, &index.map.edges.emplace_back());
+      PassEdge(&line, &map.edges.emplace_back());
     } else {
       line.Fail("'" + line.Kind() + "' must be camera, keyframe or edge");
     }
   }
   if (lines.size() < 2) throw InputError(path + ": has no camera");
-  return index;
+  return map;
 }
 
 }  // namespace rgbd_pose

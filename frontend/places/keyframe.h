@@ -18,7 +18,11 @@ namespace rgbd_pose {
 struct PngBytes {
   // Computes the checksum.
   explicit PngBytes(std::string_view file)
-      : bytes(file), checksum(TextHash().Add(bytes).Hex()) {}
+      : PngBytes(file, TextHash().Add(file).Hex()) {}
+
+  // With a known checksum: a file that is not loaded has no bytes.
+  PngBytes(std::string_view file, const std::string& checksum_of_file)
+      : bytes(file), checksum(checksum_of_file) {}
 
   const std::string bytes;     // the whole file
   const std::string checksum;  // TextHash of `bytes`, 16 hexadecimal digits

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/geometry/camera.h"
-#include "frontend/files/camera_setup.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/frame/depth_registration.h"
 #include "frontend/frame/frame.h"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "core/evaluation/trajectory.h"
 #include "core/util/format.h"
@@ -65,7 +64,7 @@ Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
     return ParseNumber(lines[row].words[column], path, lines[row].number,
                        "camera matrix");
   };
-  const cv::Mat image = ReadImageFile(image_path, cv::IMREAD_UNCHANGED);
+  const cv::Mat image = ReadImageFile(image_path);
   const Camera camera = {image.cols,   image.rows,   number(0, 0),
                          number(1, 1), number(0, 2), number(1, 2)};
   RequireSound(camera.Check(), path + ": ");

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
-#include "frontend/files/camera_setup.h"
+#include "frontend/files/camera_file.h"
 
 namespace rgbd_pose {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/files/camera_setup.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <vector>
 
@@ -103,7 +102,7 @@ bool MentionsDepth(std::string path) {
 }
 
 bool IsDepthImage(const ListedImage& image) {
-  return ReadImageFile(image.path, cv::IMREAD_UNCHANGED).type() == CV_16UC1;
+  return ReadImageFile(image.path).type() == CV_16UC1;
 }
 
 // Whether an associations file has the depth images in its left columns: by the

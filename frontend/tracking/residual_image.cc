@@ -42,10 +42,10 @@ cv::Mat FindPlaces(const FrameView& reference, const Rigid3d& cur_from_ref) {
 cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
                       const Rigid3d& cur_from_ref) {
   const ImageView<uint8_t>& gray = reference.levels[1].gray;
-  const std::vector<cv::Mat> pyramid = SmoothLevels(frame.gray, 2);
+  const SmoothPyramid pyramid{PreparedFrame(frame)};
   const cv::Mat places = FindPlaces(reference, cur_from_ref);
   cv::Mat seen;
-  cv::remap(pyramid[1], seen, places, cv::Mat(), cv::INTER_LINEAR);
+  cv::remap(pyramid.levels[1], seen, places, cv::Mat(), cv::INTER_LINEAR);
   const cv::Mat before(gray.height, gray.width, CV_8UC1,
                        const_cast<uint8_t*>(gray.data), gray.stride);
   cv::Mat column, valid;

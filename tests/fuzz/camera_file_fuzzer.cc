@@ -4,7 +4,6 @@
 #include <string>
 
 #include "frontend/files/camera_file.h"
-#include "frontend/files/camera_setup.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace {

@@ -1,7 +1,5 @@
 // Images of any kind, with the decoder that accepts them.
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "frontend/files/image_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
@@ -12,9 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   MayRefuse([&] {
     Require(ReadGrayImageFile(file).type() == CV_8UC1, "gray values");
   });
-  MayRefuse([&] {
-    Require(ReadImageFile(file, cv::IMREAD_COLOR).type() == CV_8UC3, "colours");
-  });
+  MayRefuse([&] { Require(!ReadImageFile(file).empty(), "an image"); });
   MayRefuse([&] {
     Require(ReadDepthImageFile(file).type() == CV_16UC1, "raw depths");
   });

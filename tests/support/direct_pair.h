@@ -15,8 +15,6 @@ namespace rgbd_pose {
 // A rendered frame as direct costs see it. After changing its images, call
 // Build() to rebuild the pyramid.
 struct DirectFrame {
-  static constexpr int kLevels = 6;
-
   DirectFrame(const Frame& rendered, const Camera& of_frame)
       : frame(rendered), camera(of_frame) {
     Build();
@@ -25,7 +23,7 @@ struct DirectFrame {
       : DirectFrame(dataset.Read(index), dataset.camera().camera) {}
 
   void Build() {
-    pyramid = SmoothLevels(frame.gray, kLevels);
+    pyramid = SmoothPyramid(PreparedFrame(frame)).levels;
     const auto id = view.id;
     view = ViewFrame(frame, pyramid, camera, DepthNoiseModels()[0]);
     view.id = id;

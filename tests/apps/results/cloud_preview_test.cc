@@ -40,9 +40,7 @@ std::vector<ColoredPoint> Decode(const nlohmann::json& preview) {
           static_cast<float>(preview.at("origin_m")[k].get<double>() +
                              preview.at("step_m").get<double>() * number);
     }
-    points[i].red = colors[3 * i];
-    points[i].green = colors[3 * i + 1];
-    points[i].blue = colors[3 * i + 2];
+    for (size_t k = 0; k < 3; ++k) points[i].color[k] = colors[3 * i + k];
   }
   return points;
 }
@@ -54,9 +52,8 @@ TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
     for (int i = 0; i < count; ++i) {
       ColoredPoint point;
       point.position = {1.0F + i, -2.0F * i, 0.25F};
-      point.red = static_cast<uint8_t>(250 + i);  // past 255
-      point.green = static_cast<uint8_t>(i);
-      point.blue = 128;
+      point.color = {static_cast<uint8_t>(250 + i),  // past 255
+                     static_cast<uint8_t>(i), 128};
       points.push_back(point);
     }
     const std::vector<ColoredPoint> decoded =
@@ -65,9 +62,7 @@ TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
     for (size_t i = 0; i < points.size(); ++i) {
       // Half a step of 12 m in 16 bits.
       EXPECT_LT((decoded[i].position - points[i].position).norm(), 2e-4F);
-      EXPECT_EQ(decoded[i].red, points[i].red);
-      EXPECT_EQ(decoded[i].green, points[i].green);
-      EXPECT_EQ(decoded[i].blue, points[i].blue);
+      EXPECT_EQ(decoded[i].color, points[i].color);
     }
   }
 }

@@ -27,14 +27,13 @@ class ImageFileTest : public testing::Test {
 
   void ExpectRefused(const std::string& path,
                      const std::vector<std::string>& message_parts) {
-    ExpectInputError([&] { ReadImageFile(path, cv::IMREAD_GRAYSCALE); },
-                     message_parts);
+    ExpectInputError([&] { ReadImageFile(path); }, message_parts);
   }
 
   // Expects that no truncated file is accepted as the whole image.
   void ExpectAnyCutRefused(const std::string& name, const cv::Mat& image) {
     const std::string path = Write(name, image);
-    EXPECT_NO_THROW(ReadImageFile(path, cv::IMREAD_GRAYSCALE));
+    EXPECT_NO_THROW(ReadImageFile(path));
     const std::string content = ReadTextFile(path);
     for (size_t size = 0; size < content.size(); size += 13) {
       folder_.Write(name, content.substr(0, size));
@@ -49,8 +48,7 @@ class ImageFileTest : public testing::Test {
 
 TEST_F(ImageFileTest, ReadsWhatWasWritten) {
   const cv::Mat color = Noise(CV_8UC3);
-  EXPECT_EQ(cv::norm(ReadImageFile(Write("a.png", color), cv::IMREAD_COLOR),
-                     color, cv::NORM_INF),
+  EXPECT_EQ(cv::norm(ReadImageFile(Write("a.png", color)), color, cv::NORM_INF),
             0);
   const cv::Mat depth = Noise(CV_16UC1);
   EXPECT_EQ(
@@ -80,7 +78,7 @@ TEST_F(ImageFileTest, RefusesPngWithAChangedByte) {
 TEST_F(ImageFileTest, TakesBytesBehindAJpeg) {
   const std::string path = Write("color.jpg", Noise(CV_8UC3));
   folder_.Write("color.jpg", ReadTextFile(path) + std::string(100, '\0'));
-  EXPECT_NO_THROW(ReadImageFile(path, cv::IMREAD_GRAYSCALE));
+  EXPECT_NO_THROW(ReadImageFile(path));
 }
 
 TEST_F(ImageFileTest, RefusesWhatIsNoImage) {
@@ -95,7 +93,7 @@ TEST_F(ImageFileTest, ReadsTheKindsThatRecordingsComeIn) {
   const cv::Mat color = Noise(CV_8UC3);
   for (const char* name :
        {"a.png", "a.jpg", "a.tiff", "a.bmp", "a.ppm", "a.webp"}) {
-    const cv::Mat image = ReadImageFile(Write(name, color), cv::IMREAD_COLOR);
+    const cv::Mat image = ReadImageFile(Write(name, color));
     EXPECT_EQ(image.size(), color.size()) << name;
   }
   const cv::Mat depth = Noise(CV_16UC1);
@@ -155,7 +153,7 @@ TEST_F(ImageFileTest, LeavesTheOrientationAlone) {
                                  std::string(exif, sizeof(exif) - 1) +
                                  content.substr(2));
   EXPECT_EQ(cv::imread(path, cv::IMREAD_GRAYSCALE).size(), cv::Size(24, 32));
-  EXPECT_EQ(ReadImageFile(path, cv::IMREAD_GRAYSCALE).size(), cv::Size(32, 24));
+  EXPECT_EQ(ReadImageFile(path).size(), cv::Size(32, 24));
 }
 
 }  // namespace

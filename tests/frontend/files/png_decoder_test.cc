@@ -68,8 +68,7 @@ cv::Mat AsDepth(const std::string& file) {
 // Whether damage of the file is found in any use.
 bool IsDamaged(const std::string& file) {
   return DecodePng(file, PngUse::kGray).is_damaged ||
-         DecodePng(file, PngUse::kDepth).is_damaged ||
-         DecodePng(file, PngUse::kOther).is_damaged;
+         DecodePng(file, PngUse::kDepth).is_damaged;
 }
 
 // Expects exactly OpenCV's result for a file.

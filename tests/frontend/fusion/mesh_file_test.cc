@@ -29,8 +29,8 @@ TEST(PlyWriterTest, WritesTheBytesOfTheFormat) {
       0x00, 0x00, 0x00,
   };
   const std::string bytes =
-      FormatMeshPly({{{Eigen::Vector3f(1.0F, -2.0F, 0.625F), 1, 128, 255},
-                      {Eigen::Vector3f(0.0F, 0.0F, 3.14159265F), 0, 0, 0}},
+      FormatMeshPly({{{Eigen::Vector3f(1.0F, -2.0F, 0.625F), {1, 128, 255}},
+                      {Eigen::Vector3f(0.0F, 0.0F, 3.14159265F), {}}},
                      {}});
   EXPECT_EQ(bytes, header + std::string(reinterpret_cast<const char*>(data),
                                         sizeof(data)));

@@ -86,8 +86,8 @@ TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
     const cv::Vec3b& bgr =
         frame.color.at<cv::Vec3b>(static_cast<int>(std::lround(pixel.y())),
                                   static_cast<int>(std::lround(pixel.x())));
-    differences.push_back(std::abs(bgr[2] - vertex.red) +
-                          std::abs(bgr[0] - vertex.blue));
+    differences.push_back(std::abs(bgr[2] - vertex.color[0]) +
+                          std::abs(bgr[0] - vertex.color[2]));
   }
   ASSERT_GT(differences.size(), mesh.vertices.size() / 2);
   std::sort(differences.begin(), differences.end());

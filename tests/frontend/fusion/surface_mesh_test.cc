@@ -1,5 +1,6 @@
 #include "frontend/fusion/surface_mesh.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -62,9 +63,7 @@ TEST(SurfaceMeshTest, ABallIsClosedAndItsFrontOutside) {
     // The sagitta of a voxel's diagonal.
     EXPECT_NEAR((vertex.position.cast<double>() - kBallCentre).norm(), kRadius,
                 kVoxel * kVoxel / kRadius / 2.0);
-    EXPECT_EQ(vertex.red, 10);
-    EXPECT_EQ(vertex.green, 20);
-    EXPECT_EQ(vertex.blue, 30);
+    EXPECT_THAT(vertex.color, testing::ElementsAre(10, 20, 30));
   }
 }
 

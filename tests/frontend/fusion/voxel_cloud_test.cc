@@ -1,5 +1,6 @@
 #include "frontend/fusion/voxel_cloud.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ using Eigen::Vector3f;
 
 ColoredPoint Point(float x, float y, float z, int gray = 0) {
   const auto value = static_cast<uint8_t>(gray);
-  return {Vector3f(x, y, z), value, value, value};
+  return {Vector3f(x, y, z), {value, value, value}};
 }
 
 // A float of a few metres is exact to 2e-7 m; sums of a few points to this.
@@ -38,9 +39,9 @@ std::vector<ColoredPoint> Plate(int side) {
 TEST(VoxelCloudTest, MergesPointsOfACubeToTheirMean) {
   VoxelCloud cloud(0.1F);
   ColoredPoint red = Point(1.01F, -0.02F, 2.03F);
-  red.red = 200;
+  red.color[0] = 200;
   ColoredPoint blue = Point(1.05F, -0.06F, 2.09F);
-  blue.blue = 101;
+  blue.color[2] = 101;
   cloud.Add(red);
   cloud.Add(blue);
   cloud.Add(Point(1.11F, -0.02F, 2.03F, 50));  // the next voxel
@@ -48,19 +49,17 @@ TEST(VoxelCloudTest, MergesPointsOfACubeToTheirMean) {
   ASSERT_EQ(points.size(), 2u);
   EXPECT_LT((points[0].position - Vector3f(1.03F, -0.04F, 2.06F)).norm(),
             kTolerance);
-  EXPECT_EQ(points[0].red, 100);
-  EXPECT_EQ(points[0].green, 0);
-  EXPECT_EQ(points[0].blue, 51);  // rounded
+  EXPECT_THAT(points[0].color, testing::ElementsAre(100, 0, 51));  // rounded
   EXPECT_LT((points[1].position - Vector3f(1.11F, -0.02F, 2.03F)).norm(),
             kTolerance);
-  EXPECT_EQ(points[1].green, 50);
+  EXPECT_EQ(points[1].color[1], 50);
 }
 
 TEST(VoxelCloudTest, MillionsOfPointsOfACubeKeepTheirMean) {
   VoxelCloud cloud(1.0F);
   for (int i = 0; i < 20000000; ++i) cloud.Add(Point(0.9F, 0.9F, 0.9F, 255));
   const ColoredPoint mean = cloud.Points()[0];
-  EXPECT_EQ(mean.red, 255);
+  EXPECT_EQ(mean.color[0], 255);
   EXPECT_NEAR(mean.position.x(), 0.9F, 0.01F);
 }
 
@@ -121,7 +120,7 @@ TEST(VoxelCloudTest, LeavesOutWhatIsNoPlace) {
     cloud.Add(Point(bad, 0.0F, 0.0F));
     cloud.Add(Point(0.0F, 0.0F, bad));
   }
-  EXPECT_TRUE(cloud.empty());
+  EXPECT_EQ(cloud.size(), 0);
   EXPECT_TRUE(cloud.Points().empty());
   EXPECT_TRUE(cloud.Thin(10).empty());
   cloud.Add(Point(10000.0F, -10000.0F, 0.0F));  // 10^6 voxels away
