@@ -139,7 +139,7 @@ struct BareLoop {
 void LineariseByHand(benchmark::State& state) {
   const PackedColumns rows = ManyRows<Photometric>();
   const MotionDerivatives motion = Motion();
-  const double width = FindMEstimator("huber")->Width95(1);
+  const double width = FindNamed(MEstimators(), "huber")->Width95(1);
   NormalEquations sum;
   for (auto _ : state) {
     sum = NormalEquations();

@@ -70,7 +70,8 @@ SimulatedGraph::SimulatedGraph(int keyframes, unsigned seed,
       o.u = pixel.x();
       o.v = pixel.y();
       o.depth = point.z();
-      o.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o.depth);
+      o.sigma_depth =
+          FindNamed(DepthNoiseModels(), "khoshelham")->sigma(o.depth);
       world.AddNoise(&o);
       seen.push_back({k, o});
     }

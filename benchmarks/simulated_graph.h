@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/estimation/correspondences.h"
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
-#include "core/pose_graph/relative_pose.h"
 
 namespace rgbd_pose {
 

@@ -33,7 +33,7 @@ EstimatorOptions DirectEstimatorOptions() {
   EstimatorOptions options;
   // The pyramid and a wide initial scale widen the basin.
   options.schedule = RobustSchedule::kDirect;
-  options.scale = FindScaleEstimator("mad")->estimate;
+  options.scale = MadScale;
   // More rounds do not make scale and motion more accurate.
   options.max_scale_rounds = 1;
   options.max_iterations = 8;

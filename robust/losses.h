@@ -11,9 +11,9 @@
 
 namespace rgbd_pose {
 
-// Huber's loss, w(x) = 1 if x <= c, c / x beyond, as ceres::HuberLoss:
-//
-//   R(s) = s if s <= c^2, 2 c sqrt(s) - c^2 beyond.
+// Below, R(s) of s = |r|^2 and a width c; the weights are in m_estimator.cc.
+
+// As ceres::HuberLoss: R(s) = s if s <= c^2, 2 c sqrt(s) - c^2 beyond.
 class HuberFormula {
  public:
   explicit HuberFormula(double width) : c_(width), c2_(width * width) {}
@@ -39,11 +39,8 @@ class HuberFormula {
 
 using HuberLoss = BatchLossOf<HuberFormula>;
 
-// Tukey's biweight, w(x) = (1 - (x/c)^2)^2 if x <= c, 0 beyond:
-//
-//   R(s) = c^2/3 (1 - (1 - s/c^2)^3) if s <= c^2, c^2/3 beyond,
-//
-// as ceres::TukeyLoss since Ceres 2.0 (half of that before).
+// Tukey's biweight, as ceres::TukeyLoss since Ceres 2.0 (half of that before):
+// R(s) = c^2/3 (1 - (1 - s/c^2)^3) if s <= c^2, c^2/3 beyond.
 class TukeyFormula {
  public:
   explicit TukeyFormula(double width) : c2_(width * width) {}
@@ -66,12 +63,9 @@ class TukeyFormula {
 
 using TukeyLoss = BatchLossOf<TukeyFormula>;
 
-// Fair's loss, w(x) = 1 / (1 + |x|/c):
-//
-//   R(s) = 2 c^2 (|x|/c - ln(1 + |x|/c)),  |x| = sqrt s.
-//
-// R''(0) is minus infinity. A huge but finite value is returned instead; with
-// it, s R''(s) is 0 at s = 0.
+// Fair's loss: R(s) = 2 c^2 (q - ln(1 + q)), q = sqrt(s) / c. R''(0) is minus
+// infinity. A huge but finite value is returned instead; with it, s R''(s) is 0
+// at s = 0.
 class FairLoss final : public ceres::LossFunction {
  public:
   explicit FairLoss(double width) : width_(width) {}
@@ -89,11 +83,7 @@ class FairLoss final : public ceres::LossFunction {
   double width_;
 };
 
-// Geman and McClure's loss, w(x) = (1 + (x/c)^2)^-2:
-//
-//   R(s) = s / (1 + s/c^2).
-//
-// It is bounded by c^2. Zhang's version has c = 1.
+// Geman and McClure's loss: R(s) = s / (1 + s/c^2). Zhang's version has c = 1.
 class GemanMcClureLoss final : public ceres::LossFunction {
  public:
   explicit GemanMcClureLoss(double width) : inverse_(1.0 / (width * width)) {}
@@ -109,9 +99,7 @@ class GemanMcClureLoss final : public ceres::LossFunction {
   double inverse_;
 };
 
-// Welsch's loss, w(x) = exp(-(x/c)^2):
-//
-//   R(s) = c^2 (1 - exp(-s/c^2)).
+// Welsch's loss: R(s) = c^2 (1 - exp(-s/c^2)).
 class WelschLoss final : public ceres::LossFunction {
  public:
   explicit WelschLoss(double width) : width2_(width * width) {}
@@ -127,14 +115,10 @@ class WelschLoss final : public ceres::LossFunction {
   double width2_;
 };
 
-// |x|^v for 1 <= v < 2 (Zhang's L1 and Lp), w(x) = (|x|/c)^(v-2):
-//
-//   R(s) = (2/v) c^2 (s / c^2)^(v/2).
-//
+// |x|^v for 1 <= v < 2 (Zhang's L1 and Lp): R(s) = (2/v) c^2 (s / c^2)^(v/2).
 // The width c only scales it; Zhang's versions have c = 1. As the slope at 0 is
-// infinite, s is replaced by s + (kEpsilon c)^2, and the value at 0 is
-// subtracted: below kEpsilon widths the loss becomes least squares with weight
-// kEpsilon^(v-2). Its weights exceed 1 for residuals below the width.
+// infinite, s is replaced by s + (kEpsilon c)^2, and the value at 0 subtracted:
+// below kEpsilon widths it is least squares with weight kEpsilon^(v-2).
 class PowerLoss final : public ceres::LossFunction {
  public:
   static constexpr double kEpsilon = 0.01;
@@ -160,9 +144,7 @@ class PowerLoss final : public ceres::LossFunction {
 
 // Barron's loss (A General and Adaptive Robust Loss Function, CVPR 2019) of the
 // shape -1, half-way between Cauchy (0) and Geman-McClure (-2), scaled to
-// R'(0) = 1; w(x) = (1 + (x/c)^2 / 3)^(-3/2):
-//
-//   R(s) = 6 c^2 (1 - (1 + s / (3 c^2))^(-1/2)).
+// R'(0) = 1: R(s) = 6 c^2 (1 - (1 + s / (3 c^2))^(-1/2)).
 class BarronLoss final : public ceres::LossFunction {
  public:
   explicit BarronLoss(double width) : width2_(width * width) {}

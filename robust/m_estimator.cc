@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include "core/util/input_error.h"
-#include "core/util/named_values.h"
 #include "robust/losses.h"
 
 namespace rgbd_pose {
@@ -30,9 +29,8 @@ LossPointer MakeL1L2(double width) {
   return std::make_unique<ceres::SoftLOneLoss>(std::sqrt(2.0) * width);
 }
 
-// -2 ln of the density of the t distribution with nu degrees of freedom, scale
-// c and p components: (nu + p) ln(1 + s / (nu c^2)). Scaling to R'(0) = 1
-// cancels p; the result is Cauchy's loss of another width.
+// -2 ln of the density of the t distribution with p components, (nu + p)
+// ln(1 + s / (nu c^2)), scaled to R'(0) = 1: Cauchy's loss of another width.
 LossPointer MakeStudentT(double width) {
   constexpr double kDegreesOfFreedom = 5.0;  // as DVO (Kerl et al., ICRA 2013)
   return std::make_unique<ceres::CauchyLoss>(std::sqrt(kDegreesOfFreedom) *
@@ -47,10 +45,9 @@ MEstimator Tuned(std::string_view name, std::string_view formula,
 
 }  // namespace
 
-// The widths were computed by quadrature over the chi distribution;
-// tests/robust/m_estimator_width_test.cc recomputes them. Student's t keeps the
-// sigma as its scale, at an efficiency of 92 to 94 %: at 95 % it would be
-// Cauchy's loss.
+// tests/robust/m_estimator_width_test.cc recomputes the widths by quadrature.
+// Student's t keeps the sigma as its scale, at an efficiency of 92 to 94 %: at
+// 95 % it would be Cauchy's loss.
 const std::vector<MEstimator>& MEstimators() {
   static const std::vector<MEstimator>& rows = *new std::vector<MEstimator>{
       {"none", "1", nullptr},
@@ -77,18 +74,12 @@ const std::vector<MEstimator>& MEstimators() {
   return rows;
 }
 
-const MEstimator* FindMEstimator(std::string_view name) {
-  return FindNamed(MEstimators(), name);
-}
-
 std::vector<std::string> MEstimatorNames() { return NamesOf(MEstimators()); }
 
 NamedLoss ParseLoss(const std::string& text) {
   const size_t open = text.find('(');
-  const MEstimator* const row = FindMEstimator(text.substr(0, open));
-  if (row == nullptr) {
-    throw UnknownName("loss", text, MEstimatorNames());
-  }
+  const MEstimator* const row = FindNamed(MEstimators(), text.substr(0, open));
+  if (row == nullptr) throw UnknownName("loss", text, MEstimatorNames());
   if (open == std::string::npos) return {row, 0.0};
   double width = 0.0;
   const char* const end = text.data() + text.size();

@@ -9,10 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "core/util/named_values.h"
+
 namespace rgbd_pose {
 
 // A row of the table of M-estimators. With Zhang's rho(x) (Image and Vision
-// Computing 15, 1997) a Ceres loss is 2 rho(sqrt s), with s = |r|^2 of one
+// Computing 15, 1997) a Ceres loss is R(s) = 2 rho(sqrt s), s = |r|^2 of a
 // block of whitened residuals; hence widths are in sigmas. All have R'' <= 0.
 // With k times the width, R becomes k^2 R(s / k^2)
 // (core/estimation/batch_loss.h).
@@ -36,11 +38,8 @@ struct MEstimator {
   }
 };
 
-// The table of all M-estimators.
+// The table of all M-estimators, for FindNamed.
 const std::vector<MEstimator>& MEstimators();
-
-// The row with this name, or null.
-const MEstimator* FindMEstimator(std::string_view name);
 
 // The names of all M-estimators.
 std::vector<std::string> MEstimatorNames();

@@ -5,17 +5,15 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/util/named_values.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
 
 // The factor that makes a scale estimator unbiased for a small sample: one of
-// `factors` for n from 2 to 9, and n / (n + shift) above, with one shift for
-// even and one for odd n. From Croux and Rousseeuw, Time-Efficient Algorithms
-// for Two Highly Robust Estimators of Scale (COMPSTAT 1992);
-// tests/robust/scale_test.cc confirms them by simulation.
+// `factors` for n from 2 to 9, n / (n + shift) above. From Croux and Rousseeuw,
+// Time-Efficient Algorithms for Two Highly Robust Estimators of Scale (COMPSTAT
+// 1992); tests/robust/scale_test.cc confirms them by simulation.
 double SmallSampleFactor(size_t n, const std::array<double, 8>& factors,
                          double shift_even, double shift_odd) {
   if (n < 10) return factors[n - 2];
@@ -49,21 +47,11 @@ std::vector<double> DifferencesWithin(const std::vector<double>& x, double low,
   return differences;
 }
 
-// The length of the shortest interval that contains h of the sorted values.
-double ShortestInterval(const std::vector<double>& x, size_t h) {
-  double shortest = x.back() - x.front();
-  for (size_t i = 0; i + h <= x.size(); ++i) {
-    shortest = std::min(shortest, x[i + h - 1] - x[i]);
-  }
-  return shortest;
-}
-
-// The k-th smallest difference (k >= 1) of sorted values, known not to exceed
-// `high`. There are too many differences to list, but those up to a limit are
-// counted quickly: the interval (low, high] that contains the wanted difference
-// is halved until it has at most n differences.
-double KthDifference(const std::vector<double>& x, int64_t k, double high) {
-  double low = 0.0;
+// The k-th smallest difference (k >= 1) of sorted values. As those up to a
+// limit are counted quickly, the interval (low, high] that contains it is
+// halved until it has at most n differences.
+double KthDifference(const std::vector<double>& x, int64_t k) {
+  double low = 0.0, high = x.back() - x.front();
   int64_t below = CountUpTo(x, low);
   if (below >= k) return low;
   int64_t up_to = CountUpTo(x, high);
@@ -84,8 +72,6 @@ double KthDifference(const std::vector<double>& x, int64_t k, double high) {
   std::nth_element(left.begin(), wanted, left.end());
   return *wanted;
 }
-
-}  // namespace
 
 double SnScale(std::vector<double>* values) {
   constexpr double kConsistency = 1.1926;
@@ -121,15 +107,14 @@ double QnScale(std::vector<double>* values) {
   const size_t n = values->size();
   if (n < 2) return 0.0;
   std::sort(values->begin(), values->end());
-  // Any h values have k differences among themselves.
-  const size_t h = n / 2 + 1;
-  const int64_t k = static_cast<int64_t>(h) * (h - 1) / 2;
-  const double difference =
-      KthDifference(*values, k, ShortestInterval(*values, h));
+  const int64_t h = n / 2 + 1;
+  const double difference = KthDifference(*values, h * (h - 1) / 2);
   constexpr std::array kFactors = {0.399, 0.994, 0.512, 0.844,
                                    0.611, 0.857, 0.669, 0.872};
   return kConsistency * SmallSampleFactor(n, kFactors, 3.8, 1.4) * difference;
 }
+
+}  // namespace
 
 double MadScale(std::vector<double>* values) {
   // 1 / (upper quartile of the normal distribution).
@@ -152,14 +137,6 @@ const std::vector<ScaleEstimator>& ScaleEstimators() {
       {"qn", QnScale},
   };
   return rows;
-}
-
-const ScaleEstimator* FindScaleEstimator(std::string_view name) {
-  return FindNamed(ScaleEstimators(), name);
-}
-
-std::vector<std::string> ScaleEstimatorNames() {
-  return NamesOf(ScaleEstimators());
 }
 
 }  // namespace rgbd_pose

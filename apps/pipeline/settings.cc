@@ -81,7 +81,7 @@ NamedSetting GuessByName(TrackerOptions* tracking, OdometryOptions* odometry) {
           },
           [=](const std::string& name) {
             odometry->predict_velocity = name == "velocity";
-            tracking->initial_guess = FindInitialGuess(name);
+            tracking->initial_guess = FindNamed(InitialGuesses(), name);
             if (tracking->initial_guess == nullptr && name != "last" &&
                 name != "velocity") {
               throw UnknownName("initial guess", name, GuessNames());
@@ -146,7 +146,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
       {"scale", kEstimationGroup,
        "scale of the residuals: from the noise model (fixed) or estimated; for "
        "the units of depth images see --depth_scale",
-       ScaleByName(&options->scale), ScaleEstimatorNames()},
+       ScaleByName(&options->scale), NamesOf(ScaleEstimators())},
       {"robust_schedule", kEstimationGroup,
        "direct: losses have their final width from the start; gnc: they start "
        "wide and are narrowed step by step",
@@ -171,7 +171,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &options->max_standard_deviation},
       {"depth_noise", kEstimationGroup,
        "depth noise: a model, or a file written by rgbd_calibrate",
-       DepthNoiseByName(&features->depth_noise), DepthNoiseModelNames()},
+       DepthNoiseByName(&features->depth_noise), NamesOf(DepthNoiseModels())},
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),
        NamesOf(kAssemblies)},

@@ -209,7 +209,6 @@ RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
                        double sigma_px, const DepthNoiseModel& depth_noise) {
   RowMatches result;
   result.matches = Correspondences(camera);
-  result.matches.Reserve(prev.size());
   result.rows.reserve(prev.size());
   const auto observe = [&](const NumberArray& array, size_t i) {
     Observation o = to_observation(camera, Row(array, i));

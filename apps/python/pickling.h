@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
-#include "core/pose_graph/relative_pose.h"
 #include "core/util/input_error.h"
 #include "frontend/tracking/tracked_frame.h"
 

@@ -9,8 +9,8 @@
 #include "apps/results/cloud_preview.h"
 #include "apps/shell/csv_table.h"
 #include "core/evaluation/trajectory.h"
-#include "core/util/chi_squared.h"
 #include "core/util/input_error.h"
+#include "core/util/quantile.h"
 #include "core/util/text_file.h"
 #include "robust/m_estimator.h"
 
@@ -158,8 +158,8 @@ json LossCurve(const json& data, const std::string& metrics_file) {
   const std::string name = SettingOf(data.at("settings"), "loss");
   const bool several =
       SettingOf(data.at("settings"), "cost").find('+') != std::string::npos;
-  if (FindMEstimator(name.substr(0, name.find('('))) == nullptr || several ||
-      !metrics.contains("residuals")) {
+  if (FindNamed(MEstimators(), name.substr(0, name.find('('))) == nullptr ||
+      several || !metrics.contains("residuals")) {
     return nullptr;
   }
   const int dimension = CommonDegrees(metrics, metrics_file);

@@ -43,24 +43,16 @@ struct WeighKernel {
                                          double* weights, double* sum) {
     using D = typename Lanes<W>::Type;
     D total = {};
-    for (int i = 0; i < n; i += W) {
-      const int lanes = n - i < W ? n - i : W;
+    const auto add = [&](int first, size_t lanes) {
       D x = {}, rho, weight;  // rho(0) = 0: spare lanes add nothing
-      if (lanes == W) {
-        std::memcpy(&x, s + i, sizeof(D));
-      } else {
-        for (int lane = 0; lane < lanes; ++lane) x[lane] = s[i + lane];
-      }
+      std::memcpy(&x, s + first, lanes * sizeof(double));
       formula.Weigh(x, &rho, &weight);
       total += rho;
-      if (lanes == W) {
-        std::memcpy(weights + i, &weight, sizeof(D));
-      } else {
-        for (int lane = 0; lane < lanes; ++lane) {
-          weights[i + lane] = weight[lane];
-        }
-      }
-    }
+      std::memcpy(weights + first, &weight, lanes * sizeof(double));
+    };
+    int i = 0;
+    for (; i + W <= n; i += W) add(i, W);
+    if (i < n) add(i, n - i);
     *sum = 0.0;
     for (int lane = 0; lane < W; ++lane) *sum += total[lane];
   }

@@ -31,9 +31,4 @@ bool Correspondences::Add(const Observation& prev, const Observation& cur) {
   return true;
 }
 
-void Correspondences::Clear() {
-  matches_.clear();
-  rejected_ = 0;
-}
-
 }  // namespace rgbd_pose

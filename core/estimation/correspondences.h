@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/geometry/motion.h"
+#include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
 
@@ -31,15 +33,16 @@ class Correspondences {
   // Only fx, fy, cx, cy of the camera are used: pixels are undistorted.
   explicit Correspondences(const Camera& camera) : camera_(camera) {}
 
-  // Adds a match if all its numbers are finite and below a million, its sigmas
-  // are positive (the sigma of a depth only if there is a depth) and its depths
-  // are not negative; sigmas and nonzero depths below 1e-9 are invalid.
-  // Otherwise counts it as rejected. Returns whether it was added.
+  // Adds a match if its numbers are finite and below a million, its sigmas
+  // above 1e-9 (of a depth only if there is one) and its depths 0 or above
+  // 1e-9. Otherwise counts it as rejected. Returns whether it was added.
   bool Add(const Observation& prev, const Observation& cur);
 
   // Removes all matches; keeps the memory and the camera.
-  void Clear();
-  void Reserve(size_t n) { matches_.reserve(n); }
+  void Clear() {
+    matches_.clear();
+    rejected_ = 0;
+  }
 
   // The matches, with the interface of a std::vector.
   size_t size() const { return matches_.size(); }
@@ -62,6 +65,18 @@ class Correspondences {
   Camera camera_;
   std::vector<Match> matches_;
   size_t rejected_ = 0;
+};
+
+// Knowledge of a motion from a source other than the two frames (wheels, an
+// inertial sensor, a motion model). It is a factor of the estimate, not the
+// starting point of the solver. Its covariance is taken as exact.
+struct MotionPrior {
+  Rigid3d mean;  // cur_from_prev
+
+  // Inverse of the covariance of [omega (rad), C (m)] as in MotionEstimate. May
+  // be singular: an inertial sensor measures rotation only. Zero, or an invalid
+  // information matrix, means that nothing is known.
+  MotionMatrix information = MotionMatrix::Zero();
 };
 
 }  // namespace rgbd_pose

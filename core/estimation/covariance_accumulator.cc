@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/util/chi_squared.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
@@ -13,21 +13,18 @@ namespace {
 // With fewer blocks their scatter is too uncertain to be used as a covariance.
 constexpr int kMinBlocksForScatter = 30;
 
-// With redescending losses and many outliers the slope can vanish; this minimum
-// share of the weight keeps the covariance finite and pessimistic.
+// Minimum share of the weight: with redescending losses the slope can vanish.
 constexpr double kMinSlope = 0.2;
 
-// Factor by which the spurious information may exceed its model: depths are
-// quantised, which makes slopes of surfaces seen at an angle noisier.
+// Quantised depths make slopes up to this much noisier than their model.
 constexpr double kSpuriousCostMargin = 6.0;
 
 // Measurements are rounded: depths of 1 to 4 m to 0.2 or 1 mm and corners to a
 // fiftieth of a pixel, which is about a twentieth of a sigma.
 constexpr double kRounding = 0.05;
 
-// Subtracts the spurious part from the information. Directions in which all of
-// it is spurious get zero, not negative, information, since a covariance is
-// computed from the result.
+// Subtracts the spurious part from the information, which is zero, not
+// negative, in directions in which all of it is spurious.
 MotionMatrix LessSpurious(const MotionMatrix& hessian,
                           const MotionMatrix& spurious) {
   if (spurious.isZero() || !spurious.allFinite()) return hessian;

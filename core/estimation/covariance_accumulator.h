@@ -38,29 +38,26 @@ struct CovarianceTerm {
   LossSums sums;
 };
 
-// Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3) over
-// all costs. A is the sum of the weighted Hessians, each times the ratio of the
-// mean slope of psi to the mean weight. B is the sum of the same Hessians, each
-// times the ratio of the mean of psi^2 to the mean weight, or, for costs that
-// do not whiten fully, of the scatter of their blocks, with the usual
-// correction for fitted parameters. Means are over a scale group. Residuals
-// that are almost zero (a frame against itself) do not prove a measurement to
-// be better than its rounding. The Hessian of exact sigmas (a prior) is added
-// to A and B unchanged. `inverse` is the inverse of the sum of all Hessians.
+// Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3). A is
+// the sum of the weighted Hessians, each times the ratio of the mean slope of
+// psi to the mean weight. B is the sum of the same Hessians, each times the
+// ratio of the mean of psi^2 to the mean weight, or, for costs that do not
+// whiten fully, of the scatter of their blocks, corrected for the fitted
+// parameters. Means are over a scale group. Residuals that are almost zero (a
+// frame against itself) do not prove a measurement to be better than its
+// rounding. The Hessian of exact sigmas (a prior) is added to A and B
+// unchanged. `inverse` is the inverse of the sum of all Hessians.
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);
 
-// Evaluates the terms of a sum at its minimum: which matches agree with the
-// motion, and each term's contribution to the covariance. Functions must be
-// called in the order below. Memory is reused between calls.
+// Which matches agree with the motion at the minimum, and each term's part of
+// the covariance. Functions must be called in this order. Reuses memory.
 class CovarianceAccumulator {
  public:
-  // Fills weights, inliers and residual norms of the estimate from the norms of
-  // the terms. The lists of the estimate must have one entry per match.
+  // Fills weights, inliers and residual norms, of one entry per match.
   void JudgeMatches(const RobustProblem& problem, MotionEstimate* estimate);
 
-  // RobustProblem::Linearise, minus the spurious information from noise
-  // (MotionCost::AddSpuriousInformation).
+  // RobustProblem::Linearise, minus MotionCost::AddSpuriousInformation.
   NormalEquations Linearise(const RobustProblem& problem,
                             const MotionDerivatives& motion);
 

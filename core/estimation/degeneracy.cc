@@ -22,10 +22,9 @@ constexpr std::array<const char*, 6> kDirections = {
     "rotation about x",    "rotation about y",    "rotation about z",
     "translation along x", "translation along y", "translation along z"};
 
-// Units that make rotations and translations comparable: the information on
-// each, averaged over its axes. Units of each axis would give wrong names:
-// gliding along a slightly tilted wall changes the distance to it by little,
-// but by many of its small standard deviations, and would be named after it.
+// Units that make rotations and translations comparable. They are averaged over
+// the axes: gliding along a slightly tilted wall also changes the distance to
+// it, by little, but by many of its own standard deviations.
 MotionVector MeanUnits(const MotionMatrix& hessian) {
   MotionVector units;
   for (const int first : {0, 3}) {
@@ -52,8 +51,7 @@ std::string Describe(const MotionVector& direction, double deviation) {
                        deviation, order[0] < 3 ? "rad" : "m");
 }
 
-// The largest standard deviation within three rows of a covariance, and the
-// correlated change of all six parameters.
+// The largest standard deviation within three rows, and the change of all six.
 struct WeakDirection {
   double deviation;
   MotionVector direction;
@@ -64,6 +62,44 @@ WeakDirection WeakestOf(const MotionMatrix& covariance, int first) {
       Eigen::Matrix3d(covariance.block<3, 3>(first, first)));
   return {std::sqrt(eigen.eigenvalues()[2]),
           covariance.middleCols<3>(first) * eigen.eigenvectors().col(2)};
+}
+
+// The share of the matches' information on a change of the motion that comes
+// from inliers, without the three that contribute most.
+double SupportedShare(const Correspondences& matches,
+                      const MotionEstimate& estimate,
+                      const MotionVector& change) {
+  const Camera& camera = matches.camera();
+  const Rigid3d& motion = estimate.cur_from_prev;
+  const Eigen::Vector3d turn = change.head<3>();
+  const Eigen::Vector3d shift = motion.rotation * change.tail<3>();
+  double total = 0.0, agreeing = 0.0;
+  std::array<double, 3> most = {};  // the largest first
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const auto& [prev, cur] = matches[i];
+    if (estimate.weights[i] == 0.0 || !(prev.depth + cur.depth > 0.0)) continue;
+    const Eigen::Vector3d point =
+        cur.depth > 0.0 ? matches.Point(cur) : motion * matches.Point(prev);
+    const Eigen::Vector3d moved = turn.cross(point) - shift;
+    const double z = point.z();
+    const Eigen::Vector2d across =
+        moved.head<2>() - moved.z() / z * point.head<2>();
+    const double px = std::hypot(prev.sigma_px, cur.sigma_px) * z / camera.fx;
+    double known = across.squaredNorm() / (px * px);
+    if (prev.depth > 0.0 && cur.depth > 0.0) {
+      known += std::pow(moved.z(), 2) /
+               (std::pow(prev.sigma_depth, 2) + std::pow(cur.sigma_depth, 2));
+    }
+    known *= estimate.weights[i];
+    total += known;
+    if (!estimate.is_inlier[i]) continue;
+    agreeing += known;
+    for (double& value : most) {
+      if (known > value) std::swap(known, value);
+    }
+  }
+  const double supported = agreeing - most[0] - most[1] - most[2];
+  return total > 0.0 ? std::max(supported, 0.0) / total : 1.0;
 }
 
 }  // namespace
@@ -111,50 +147,18 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   return result;
 }
 
-void JudgeWeakestRotation(double share, double spurious_information,
+void JudgeWeakestRotation(const Correspondences& matches,
+                          const MotionEstimate& estimate,
+                          double spurious_information,
                           double max_standard_deviation, Degeneracy* result) {
+  const double share =
+      SupportedShare(matches, estimate, result->weakest_rotation);
   const double known = share * result->known_rotation;
   const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
   if (known >= std::max(least, kSpuriousMargin * spurious_information)) return;
   MotionVector rotation = result->weakest_rotation;
   rotation.tail<3>().setZero();  // in another unit
   result->reason = Describe(rotation, 1.0 / std::sqrt(known));
-}
-
-double SupportedShare(const Correspondences& matches,
-                      const MotionEstimate& estimate,
-                      const MotionVector& change) {
-  const Camera& camera = matches.camera();
-  const Rigid3d& motion = estimate.cur_from_prev;
-  const Eigen::Vector3d turn = change.head<3>();
-  const Eigen::Vector3d shift = motion.rotation * change.tail<3>();
-  double total = 0.0, agreeing = 0.0;
-  std::array<double, 3> most = {};  // the largest first
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const auto& [prev, cur] = matches[i];
-    if (estimate.weights[i] == 0.0 || !(prev.depth + cur.depth > 0.0)) continue;
-    const Eigen::Vector3d point =
-        cur.depth > 0.0 ? matches.Point(cur) : motion * matches.Point(prev);
-    const Eigen::Vector3d moved = turn.cross(point) - shift;
-    const double z = point.z();
-    const Eigen::Vector2d across =
-        moved.head<2>() - moved.z() / z * point.head<2>();
-    const double px = std::hypot(prev.sigma_px, cur.sigma_px) * z / camera.fx;
-    double known = across.squaredNorm() / (px * px);
-    if (prev.depth > 0.0 && cur.depth > 0.0) {
-      known += std::pow(moved.z(), 2) /
-               (std::pow(prev.sigma_depth, 2) + std::pow(cur.sigma_depth, 2));
-    }
-    known *= estimate.weights[i];
-    total += known;
-    if (!estimate.is_inlier[i]) continue;
-    agreeing += known;
-    for (double& value : most) {
-      if (known > value) std::swap(known, value);
-    }
-  }
-  const double supported = agreeing - most[0] - most[1] - most[2];
-  return total > 0.0 ? std::max(supported, 0.0) / total : 1.0;
 }
 
 double SpuriousInformation(const Correspondences& matches,

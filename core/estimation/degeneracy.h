@@ -32,30 +32,25 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
                           double spurious_information,
                           double max_standard_deviation);
 
-// The same if only a share of the information on the weakest rotation counts.
-void JudgeWeakestRotation(double share, double spurious_information,
+// The same for the weakest rotation, known by inliers without the three that
+// contribute most. If the right matches leave a rotation open, the estimate
+// turns until a wrong match, of a long lever, agrees by chance.
+void JudgeWeakestRotation(const Correspondences& matches,
+                          const MotionEstimate& estimate,
+                          double spurious_information,
                           double max_standard_deviation, Degeneracy* result);
 
 // The information on a rotation that the noise of the matches alone would
-// produce, rad^-2. Noise moves points off a line in any direction and thus
-// gives them a lever about the line. A lever that is pure noise contributes 1
-// per match if the point's noise is equal in both directions across the axis,
-// and
+// produce, rad^-2. Noise moves points off a line and thus gives them a lever
+// about the line. A match contributes 1 if its noise is equal in both
+// directions across the axis, and
 //
 //   (q + 1 / q) / 2,   q = sigma_depth^2 / (depth sigma_px / fx)^2
 //
-// if these directions are along the ray and across it: the lever is long where
-// the error is large, and the error is measured where it is small. `weights` of
-// the matches in their order; empty: 1 each.
+// if these are along the ray and across it: the lever is long where the error
+// is large, and the error is measured where it is small. `weights` of the
+// matches in their order; empty: 1 each.
 double SpuriousInformation(const Correspondences& matches,
                            const std::vector<double>& weights);
-
-// The share of the matches' information on a change of the motion that comes
-// from inliers, without the three that contribute most. If the right matches
-// leave a rotation open, the estimate turns until a wrong match agrees by
-// chance, and such a match has a long lever.
-double SupportedShare(const Correspondences& matches,
-                      const MotionEstimate& estimate,
-                      const MotionVector& change);
 
 }  // namespace rgbd_pose

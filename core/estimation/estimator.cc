@@ -109,8 +109,7 @@ class Estimator::Impl {
     out_->num_used = terms_.num_used();
   }
 
-  // Called if the solver found no usable step or too few matches remained: the
-  // matches at the guess, all taken as inliers, may show why.
+  // If nothing was found, the matches at the guess, all inliers, may show why.
   void JudgeGuess(const Rigid3d& guess) {
     terms_.SetLevel(0, guess);
     const NormalEquations sum =
@@ -137,9 +136,8 @@ class Estimator::Impl {
         FindDegeneracy(sum.hessian, spurious, options_.max_standard_deviation);
     if (!degeneracy.is_degenerate() &&
         out_->num_inliers < kHardlyWrong * terms_.num_used()) {
-      JudgeWeakestRotation(
-          SupportedShare(*matches_, *out_, degeneracy.weakest_rotation),
-          spurious, options_.max_standard_deviation, &degeneracy);
+      JudgeWeakestRotation(*matches_, *out_, spurious,
+                           options_.max_standard_deviation, &degeneracy);
     }
     if (degeneracy.is_degenerate()) {
       out_->status = EstimateStatus::kDegenerate;
@@ -147,11 +145,6 @@ class Estimator::Impl {
       return;
     }
     out_->covariance = shares_.Covariance(terms_, motion, degeneracy.inverse);
-    JudgeMotion();
-  }
-
-  // For a motion with all directions determined.
-  void JudgeMotion() {
     const int used = terms_.num_used();
     const double share = static_cast<double>(out_->num_inliers) / used;
     out_->status = EstimateStatus::kOk;

@@ -32,16 +32,14 @@ struct EstimatorOptions {
   // 1.01), or directly to the spread of the residuals if this is narrower.
   double gnc_factor = 2.0;
 
-  // Estimates the spread of residual components in units of the noise model;
-  // the widths are then adapted to it. May reorder its argument. Null: the
-  // noise model is used unchanged.
+  // Estimates the spread of residual components in units of the noise model, to
+  // which the widths are adapted. May reorder its argument. Null: no scale.
   double (*scale)(std::vector<double>* residuals) = nullptr;
 
   // Scale and motion are estimated alternately, at most this many times.
   int max_scale_rounds = 10;
 
-  // If residuals are chosen again after every step, iteration stops at the
-  // first step smaller than this (rad and m).
+  // Smallest step (rad and m) if residuals are chosen again after every step.
   double step_tolerance = 1e-6;
 
   // Maximum iterations of the solver in the last stage; 2 in earlier ones.
@@ -50,16 +48,13 @@ struct EstimatorOptions {
   // The estimate is `inconsistent` if the share of inliers is below this.
   double min_inlier_share = 0.2;
 
-  // The estimate is also `inconsistent` if the estimated scale exceeds this:
-  // matches so much noisier than the noise model are wrong.
+  // The estimate is also `inconsistent` if the estimated scale exceeds this.
   double max_scale = 5.0;
 
-  // A direction of motion is `degenerate` if its standard deviation exceeds
-  // this (rad for rotation, m for translation).
+  // A motion with a larger standard deviation (rad or m) is `degenerate`.
   double max_standard_deviation = 0.5;
 
-  // Threads for sums over tens of thousands of matches. The result does not
-  // depend on it, to the last bit.
+  // For sums over tens of thousands of matches; results do not depend on it.
   int threads = 1;
 
   // One line that says what is wrong with the options, or empty.
@@ -67,8 +62,8 @@ struct EstimatorOptions {
 };
 
 // Estimates the motion between two frames: minimises the sum of all costs under
-// their losses with Ceres, coarse to fine for costs with levels. Memory is
-// reused between calls; one object serves one thread at a time.
+// their losses, coarse to fine for costs with levels. Memory is reused between
+// calls; one object serves one thread at a time.
 class Estimator {
  public:
   // Minimises the sum of these costs. Throws InputError for invalid options.

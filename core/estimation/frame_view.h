@@ -65,8 +65,8 @@ struct FrameView {
   // Moving objects in levels[0], ignored by direct costs; null: none known.
   const CellMask* moving = nullptr;
 
-  // Depth (m) at an integer pixel of levels[0]; 0 if there is none. Sensors
-  // mark missing depths by 0 or by the largest value.
+  // Depth (m) at a pixel of levels[0]; 0 if missing, which sensors mark by 0 or
+  // by the largest value.
   double DepthAt(int column, int row) const {
     const uint16_t raw = depth.At(column, row);
     return raw == UINT16_MAX ? 0.0 : raw / depth_scale;

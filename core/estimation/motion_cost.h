@@ -9,10 +9,9 @@
 
 #include "core/estimation/correspondences.h"
 #include "core/estimation/frame_view.h"
-#include "core/estimation/motion_prior.h"
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
-#include "core/util/chi_squared.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 
@@ -24,8 +23,8 @@ enum class Assembly {
   kCompressed,  // one block of 7 rows for all matches: fast, the default
 };
 
-// Ownership of the residual blocks of an assembly: the compressed block is part
-// of its cost and reused; the others are created for each problem.
+// The compressed block is part of its cost and reused; the residual blocks of
+// other assemblies are created for each problem.
 constexpr ceres::Ownership BlockOwnership(Assembly assembly) {
   return assembly == Assembly::kCompressed ? ceres::DO_NOT_TAKE_OWNERSHIP
                                            : ceres::TAKE_OWNERSHIP;
@@ -39,21 +38,17 @@ struct NormalEquations {
   double cost = 0.0;                             // 1/2 sum rho
 };
 
-// The data a cost may use: the two frames of a pair and prior knowledge of the
-// motion between them.
+// The data a cost may use: two frames and prior knowledge of their motion.
 struct FramePair {
   const Correspondences* matches = nullptr;  // null: none
   const MotionPrior* prior = nullptr;        // null: no prior
   const FrameView* prev = nullptr;           // null: no images
   const FrameView* cur = nullptr;            // null: no images
-  // Number of finest levels to use, for a good guess; 0: all.
-  int num_levels = 0;
-
+  int num_levels = 0;  // of the finest levels, for a good guess; 0: all
   int threads = 1;  // for sums over many residuals; results do not depend on it
 };
 
-// When the solver lets a cost choose its residuals and their weights again, as
-// both may depend on the motion. In order of increasing frequency.
+// When a cost chooses its residuals and their weights again; rarest first.
 enum class AssociationPolicy {
   kOnce,       // at the guess
   kWhenMoved,  // when the motion has changed considerably since then
@@ -79,30 +74,24 @@ class MotionCost {
   // The number of residuals of a block, e.g. of a match or a pixel.
   virtual int num_residuals() const = 0;
 
-  // The number of independent measurements per block. The squared norm of the
-  // whitened residuals of an inlier approximately follows a chi^2 distribution
-  // with this number of degrees of freedom.
+  // The number of independent measurements per block: the degrees of freedom of
+  // the chi^2 that the squared norm of an inlier approximately follows.
   virtual int degrees_of_freedom() const = 0;
 
-  // Whether the whitened residuals of inliers are independent with unit
-  // variance, so the Hessian gives the covariance. Otherwise (e.g. for a
-  // formulation without directions) their scatter is measured.
+  // Whether the residuals of inliers are independent with unit variance, so the
+  // Hessian gives the covariance. Otherwise their scatter is measured.
   virtual bool is_whitened() const = 0;
 
-  // The limit below which 99 % of the squared norms of inliers lie, for the
-  // k-th block. Only called for costs that are not whitened: for others the
-  // limit is this quantile of chi^2.
+  // 99 % of the squared norms of inliers of the k-th block are below this.
   virtual double InlierLimit(int k) const { return ChiSquared99(degrees()[k]); }
 
-  // Costs of one group share the factor by which their sigmas are wrong. It is
-  // estimated (EstimatorOptions::scale) or measured by the scatter of their
-  // residuals. Gray levels and metres have different scales. kFixedScale: the
-  // sigmas are exact, and the cost takes part in neither.
+  // Costs of one group share the factor by which their sigmas are wrong, which
+  // is estimated (EstimatorOptions::scale) or measured by their scatter. Gray
+  // levels and metres differ. kFixedScale: the sigmas are exact.
   virtual int scale_group() const { return 0; }
 
-  // The share of independent information in the blocks: below 1 if the blocks
-  // are not independent of each other (e.g. neighbouring pixels). Multiplies
-  // the cost and thus the inverse of the covariance.
+  // The share of independent information in the blocks: below 1 if they depend
+  // on each other (e.g. neighbouring pixels). Multiplies the cost.
   virtual double information_factor() const { return 1.0; }
 
   // When Associate has to be called.
@@ -113,26 +102,24 @@ class MotionCost {
   virtual int num_levels() const { return 1; }
   virtual void SetLevel(int /*level*/) {}
 
-  // Binds the cost to a pair; only memory is kept from an earlier pair. Matches
-  // and prior must exist during this call, images while it is bound.
+  // Keeps only memory from an earlier pair. Matches and prior must exist during
+  // this call, images while the cost is bound.
   virtual void Bind(const FramePair& pair) = 0;
 
   // Chooses the residuals and freezes their weights at a motion.
   virtual void Associate(const Rigid3d& cur_from_prev) = 0;
 
-  // The same within a solve, for costs that are associated at every step:
-  // values that must be constant in a solve (e.g. a brightness change) are
-  // kept.
+  // The same within a solve, for costs that are associated at every step: keeps
+  // values that must be constant in a solve (e.g. a brightness change).
   virtual void Reassociate(const Rigid3d& cur_from_prev) {
     Associate(cur_from_prev);
   }
 
-  // The index of each block's match within the Correspondences, increasing; -1
-  // for a block without a match (a pixel, a prior).
+  // The index of each block's match, increasing; -1 for a pixel or a prior.
   virtual const std::vector<int>& matches() const = 0;
 
-  // The number of independent measurements of each block: degrees_of_freedom(),
-  // or fewer if some are missing; rows of missing ones are zero.
+  // degrees_of_freedom() of each block, or fewer if measurements are missing,
+  // whose rows are zero.
   virtual const std::vector<int>& degrees() const = 0;
 
   // Whitened residuals, num_residuals() for each block.
@@ -149,16 +136,14 @@ class MotionCost {
                          const ceres::LossFunction* loss,
                          NormalEquations* sum) const = 0;
 
-  // Adds sum rho'^2 J^T r r^T J over blocks. Together with the Hessian it gives
-  // the (sandwich) covariance of an M-estimate for any true distribution of
-  // residuals.
+  // Adds sum rho'^2 J^T r r^T J over blocks: with the Hessian, it gives the
+  // (sandwich) covariance for any true distribution of residuals.
   virtual void AddScoreOuterProduct(const MotionDerivatives& motion,
                                     const ceres::LossFunction* loss,
                                     MotionMatrix* scatter) const = 0;
 
-  // Adds the spurious information caused by noise of the derivatives themselves
-  // (of an image, of a surface's slope): the Hessian of rows of pure noise, in
-  // units of the estimated scale. Exact derivatives have none.
+  // Adds the Hessian of pure noise of the derivatives (of an image, of a slope)
+  // in units of the estimated scale. Exact derivatives have none.
   virtual void AddSpuriousInformation(const MotionDerivatives& /*motion*/,
                                       MotionMatrix* /*hessian*/) const {}
 

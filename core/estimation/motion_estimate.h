@@ -30,13 +30,13 @@ struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
-  Rigid3d cur_from_prev;  // the guess if the motion was not judged
+  // The guess if not judged: too few matches, degenerate, or no usable step.
+  Rigid3d cur_from_prev;
 
   // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small
   // rotation about the axes of the current camera, R_true = Exp(omega) R; C (m)
   // is the centre of the current camera in the axes of the previous one. Zero
-  // if the motion was not judged: too few matches, degenerate, or no usable
-  // step. If the solver stopped early, it is for the last motion.
+  // if the motion was not judged.
   MotionMatrix covariance = MotionMatrix::Zero();
 
   // Per match, in the order of the Correspondences: robust weight in [0, 1]
@@ -46,10 +46,9 @@ struct MotionEstimate {
   std::vector<bool> is_inlier;
 
   // Also per match: the norm of its whitened residual at this motion, in sigmas
-  // of the noise model, and its number of independent measurements. For inliers
-  // the norm follows a chi distribution with this number of degrees of freedom.
-  // If several costs use a match, the largest norm counts. Both are 0 for
-  // matches that no cost could use, and for all if the motion was not judged.
+  // of the noise model, and its number of independent measurements. If several
+  // costs use a match, the largest norm counts. Both are 0 for matches that no
+  // cost could use, and for all if the motion was not judged.
   std::vector<double> residual_norms;
   std::vector<int> residual_degrees;
 

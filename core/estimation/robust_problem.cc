@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/util/chi_squared.h"
 #include "core/util/counter_random.h"
 #include "core/util/quantile.h"
 
@@ -14,12 +13,10 @@ namespace {
 // Fewer residuals do not determine their spread.
 constexpr size_t kMinResidualsForScale = 10;
 // This many determine it to 2 %. If there are more (pixels), one block out of
-// every two, three, ... is drawn at random, since a fixed step could coincide
-// with a pattern (the rows of a block, the columns of an image).
+// every two, three, ... is drawn at random: a fixed step could meet a pattern.
 constexpr size_t kMaxResidualsForScale = 2000;
 
-// Limits of a scale: a spread of zero (over half of the residuals equal) or a
-// huge one (over half of the matches wrong) is useless.
+// A spread of zero (most residuals equal) or a huge one (most wrong) is no use.
 constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
 // Scale and motion are estimated alternately until no scale changes by more.
@@ -29,20 +26,6 @@ constexpr double kScaleTolerance = 0.01;
 
 RobustProblem::RobustProblem(std::vector<RobustCost> costs) {
   for (RobustCost& cost : costs) terms_.push_back({std::move(cost)});
-}
-
-bool RobustProblem::has_losses() const {
-  return std::any_of(terms_.begin(), terms_.end(), [](const RobustTerm& term) {
-    return term.loss != nullptr;
-  });
-}
-
-int RobustProblem::num_levels() const {
-  int most = 1;
-  for (const RobustTerm& term : terms_) {
-    most = std::max(most, term.cost->num_levels());
-  }
-  return most;
 }
 
 void RobustProblem::Bind(const FramePair& pair, const Rigid3d& cur_from_prev) {

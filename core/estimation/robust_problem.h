@@ -37,19 +37,12 @@ struct RobustTerm : RobustCost {
   }
 };
 
-// The sum that an estimator minimises: costs under their losses, bound to one
-// pair at a time, and their shared memory.
+// The sum that an estimator minimises, bound to one pair at a time.
 class RobustProblem {
  public:
   explicit RobustProblem(std::vector<RobustCost> costs);
 
-  bool has_losses() const;
-
-  // The largest number of levels of any cost.
-  int num_levels() const;
-
-  // Binds all costs at the finest level, with nominal loss widths, and
-  // associates them.
+  // Binds and associates all costs, at the finest level and nominal widths.
   void Bind(const FramePair& pair, const Rigid3d& cur_from_prev);
 
   // Costs with fewer levels use their coarsest one for coarser levels.
@@ -80,9 +73,8 @@ class RobustProblem {
   // units of the noise model at the current scales, ideally 1.
   double UpdateNorms(const MotionDerivatives& motion);
 
-  // The scale of a group of costs is the ratio of its noise to its noise model:
-  // 1, or estimated from the residual components by a scale estimator. Without
-  // a noticeable change UpdateScales changes nothing and returns false.
+  // The scale of a group of costs is the ratio of its noise to its noise model.
+  // Without a noticeable change UpdateScales changes nothing and returns false.
   void ResetScales() {
     for (RobustTerm& term : terms_) term.scale = 1.0;
   }

@@ -11,23 +11,17 @@ namespace rgbd_pose {
 namespace {
 
 // Weight of the first pair's orientation relative to the spread of the
-// positions: large enough to outweigh their rounding errors, too small to
-// change a rotation that they determine by more than about 1e-9 rad.
+// positions: more than their rounding errors, less than what they determine.
 constexpr double kShareOfSpread = 1e-9;
 constexpr double kLeastSpread = 1e-18;  // m^2 per pair: a spread of 1 nm
 
-constexpr double kMaxScaleError = 0.1;
-
-// A scale is reported only if the residual with it is at most this share of the
-// error without it. Otherwise the scale may be due to chance.
+// A scale is reported if it leaves at most this share of the error.
 constexpr double kExplained = 0.5;
 
-// Paths whose residual exceeds this share of the true spread belong to
-// different motions. Below the minimum spread (m) there is only noise.
+// A larger share of the true spread means other motions, a smaller spread (m)
+// only noise.
 constexpr double kMaxRest = 0.7;
 constexpr double kMinSpread = 0.05;
-
-constexpr double kMinShare = 1e-12;
 
 }  // namespace
 
@@ -71,7 +65,7 @@ Sim3Alignment Compare(const std::vector<PosePair>& pairs,
   }
   Sim3Alignment sim3;
   // Rounding errors alone do not determine a scale.
-  if (of_estimate > kMinShare * of_truth && both > 0.0) {
+  if (of_estimate > 1e-12 * of_truth && both > 0.0) {
     sim3.truth_per_estimate = both / of_estimate;
   }
   const double scale = sim3.truth_per_estimate;
@@ -92,8 +86,7 @@ std::string Sim3Warning(const Sim3Alignment& sim3, double ate) {
         sim3.residual_rmse, sim3.spread);
   }
   const double scale = sim3.truth_per_estimate;
-  if (std::abs(scale - 1.0) <= kMaxScaleError ||
-      sim3.residual_rmse > kExplained * ate) {
+  if (std::abs(scale - 1.0) <= 0.1 || sim3.residual_rmse > kExplained * ate) {
     return "";
   }
   return Format(

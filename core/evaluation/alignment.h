@@ -12,17 +12,14 @@ namespace rgbd_pose {
 // minimises the squared distances between estimated and true positions (Horn
 // 1987; Umeyama 1991). `pairs` must not be empty.
 //
-// If the positions in one of the two lists coincide or lie on one line,
-// rotations remain free. Among these, the one that best aligns the orientations
-// of the first pair is chosen; the sum of squares stays the same.
+// If the positions of a list coincide or lie on one line, rotations remain
+// free: then the one that best aligns the orientations of the first pair.
 Rigid3d AlignRigidly(const std::vector<PosePair>& pairs);
 
 // Similarity of a path to the truth, apart from its size. A wrong depth scale
-// or focal length changes the size but not the shape; a wrong file changes
-// both.
+// or focal length changes only the size; a wrong file the shape, too.
 struct Sim3Alignment {
-  // The scale factor that fits the estimate best to the truth; 1 if the
-  // estimate does not move.
+  // The scale that fits the estimate best; 1 if it does not move.
   double truth_per_estimate = 1.0;
 
   // Root mean squares of distances (m): of the true positions from their mean,

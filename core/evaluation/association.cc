@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <queue>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -12,37 +14,12 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kNone = -1;
-
-// An entry of either list, linked to the remaining entries before and after it.
+// An entry of either list.
 struct Entry {
   double time;
   int index;  // in its own list
   bool in_first;
-  int previous = kNone;
-  int next = kNone;
-  bool used = false;
 };
-
-// Merges both lists in time order.
-std::vector<Entry> MergeLists(const std::vector<double>& first,
-                              const std::vector<double>& second) {
-  std::vector<Entry> entries;
-  for (const bool in_first : {true, false}) {
-    int index = 0;
-    for (const double time : in_first ? first : second) {
-      entries.push_back({time, index++, in_first});
-    }
-  }
-  std::stable_sort(
-      entries.begin(), entries.end(),
-      [](const Entry& a, const Entry& b) { return a.time < b.time; });
-  for (size_t i = 1; i < entries.size(); ++i) {
-    entries[i].previous = static_cast<int>(i - 1);
-    entries[i - 1].next = static_cast<int>(i);
-  }
-  return entries;
-}
 
 std::string TimeRange(const std::vector<double>& times) {
   if (times.empty()) return "no poses";
@@ -52,40 +29,50 @@ std::string TimeRange(const std::vector<double>& times) {
 }  // namespace
 
 // Any entry between the two entries of a pair is nearer to one of them; hence
-// the nearest pair always consists of neighbours in time. After removing it,
-// the entries around it are neighbours.
+// the nearest pair consists of neighbours in time, also among what remains.
 std::vector<IndexPair> Associate(const std::vector<double>& first,
                                  const std::vector<double>& second,
                                  double max_difference) {
-  std::vector<Entry> entries = MergeLists(first, second);
-  using Candidate = std::tuple<double, int, int>;  // difference, two indices
+  std::vector<Entry> entries;  // of both lists, in time order
+  for (const bool in_first : {true, false}) {
+    int index = 0;
+    for (const double time : in_first ? first : second) {
+      entries.push_back({time, index++, in_first});
+    }
+  }
+  std::stable_sort(
+      entries.begin(), entries.end(),
+      [](const Entry& a, const Entry& b) { return a.time < b.time; });
+  using Candidate = std::tuple<double, int, int>;  // difference, two entries
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>
       nearest_first;
   const auto add_candidate = [&](int left, int right) {
-    if (left == kNone || right == kNone) return;
     if (entries[left].in_first == entries[right].in_first) return;
     const double difference = entries[right].time - entries[left].time;
     if (difference <= max_difference) {
       nearest_first.emplace(difference, left, right);
     }
   };
-  for (size_t i = 0; i < entries.size(); ++i) {
-    add_candidate(static_cast<int>(i), entries[i].next);
+  std::set<int> remaining;  // entries
+  for (int i = 0; i < static_cast<int>(entries.size()); ++i) {
+    remaining.insert(remaining.end(), i);
+    if (i > 0) add_candidate(i - 1, i);
   }
 
   std::vector<IndexPair> pairs;
   while (!nearest_first.empty()) {
     const auto [difference, left, right] = nearest_first.top();
     nearest_first.pop();
-    Entry& a = entries[left];
-    Entry& b = entries[right];
-    if (a.used || b.used) continue;
-    a.used = b.used = true;
+    if (remaining.count(left) == 0 || remaining.count(right) == 0) continue;
+    const Entry& a = entries[left];
+    const Entry& b = entries[right];
     pairs.emplace_back(a.in_first ? a.index : b.index,
                        a.in_first ? b.index : a.index);
-    if (a.previous != kNone) entries[a.previous].next = b.next;
-    if (b.next != kNone) entries[b.next].previous = a.previous;
-    add_candidate(a.previous, b.next);
+    remaining.erase(left);
+    const auto after = remaining.erase(remaining.find(right));
+    if (after != remaining.begin() && after != remaining.end()) {
+      add_candidate(*std::prev(after), *after);
+    }
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;

@@ -15,15 +15,13 @@ using IndexPair = std::pair<int, int>;
 // Pairs two lists of strictly increasing, finite timestamps (s) by nearest
 // time, at most `max_difference` (s) apart: the pair with the smallest
 // difference first, then the smallest among the remaining entries, each entry
-// used once (as in associate.py of the TUM RGB-D benchmark). If differences are
-// equal the earlier pair wins. The result is in the order of the first list.
-// Takes O(n log n) for n entries in both lists, however close they are.
+// used once (as in associate.py of the TUM RGB-D benchmark); the earlier pair
+// of two equal ones. The result is in the order of the first list. O(n log n).
 std::vector<IndexPair> Associate(const std::vector<double>& first,
                                  const std::vector<double>& second,
                                  double max_difference);
 
-// An estimated pose and the ground truth at the same time. Each has its own
-// world; both map from the same camera.
+// An estimated and a true pose at the same time, each in its own world.
 struct PosePair {
   double timestamp = 0.0;  // of the estimate, s
   Rigid3d truth;           // truth_world_from_cam
@@ -39,8 +37,7 @@ std::vector<double> TimesOf(const List& list) {
   return times;
 }
 
-// The index of the time nearest to `time` in a sorted, non-empty list; the
-// earlier one if two are equally near.
+// The index of the (earlier) nearest time in a sorted, non-empty list.
 size_t NearestTime(const std::vector<double>& times, double time);
 
 // Pairs poses that are nearest in time and at most `max_time_difference` (s)

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
-#include "core/pose_graph/relative_pose.h"
+#include "core/geometry/motion.h"
 
 namespace rgbd_pose {
 
@@ -13,14 +13,13 @@ struct TruthNoise {
   double rotation = 0.0;     // sigma, rad
 };
 
-// Squared error of an edge, [omega C] as in MotionEstimate, in units of its
-// covariance plus `noise`. If the covariance is correct, the result follows
-// chi^2 with 6 degrees of freedom: the mean is 6, and 0.3 in a million edges
-// exceed kWrongChiSquare, as many as exceed five sigmas in one dimension.
+// Squared error of an edge, [omega C], in units of its covariance plus `noise`:
+// chi^2 with 6 degrees of freedom if the covariance is correct.
 double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
                  const TruthNoise& noise);
 
-// A motion with a larger chi^2 counts as wrong.
+// A motion with a larger chi^2 counts as wrong: 0.3 in a million, as many as
+// exceed five sigmas in one dimension.
 constexpr double kWrongChiSquare = 40.9;
 
 // Consistency of motions with their covariances.
@@ -39,8 +38,8 @@ struct RunConsistency {
   Consistency edges;       // all motions, also of other frames
 };
 
-// Judges edges by the truth, interpolated at the `times` (s, by index) of their
-// frames. Edges without a covariance or without the truth are skipped.
+// Judges edges by the truth, interpolated at the `times` (s) of their frames.
+// Skips edges without a covariance or without the truth.
 Consistency Judge(const std::vector<RelativePose>& edges,
                   const std::vector<double>& times, const Trajectory& truth,
                   const TruthNoise& noise);

@@ -19,13 +19,10 @@ struct EvaluationOptions {
   // interval of a relative error in time may be off by the same amount.
   double max_time_difference = 0.02;
 
-  // The intervals of the relative pose errors: in time (s) and along the path
-  // of the ground truth (m).
+  // The intervals of the relative pose errors, in time and along the true path.
   double rpe_delta_seconds = 1.0;
   double rpe_delta_metres = 1.0;
-
-  // Intervals in frames, at least 1 each.
-  std::vector<int> rpe_frames = {1, 6};
+  std::vector<int> rpe_frames = {1, 6};  // intervals in frames, at least 1 each
 
   // False if both are in the same world already, e.g. poses within a map.
   bool align = true;
@@ -58,9 +55,8 @@ struct EvaluationReport {
   double duration = 0.0;      // from the first to the last paired pose, s
   double path_length = 0.0;   // of the paired ground truth, m
 
-  // Absolute trajectory error: distances (m) of positions after the rigid
-  // alignment, without scale, by truth_from_estimate (between the worlds; the
-  // identity without alignment).
+  // Absolute trajectory error: distances (m) of positions after the alignment
+  // by truth_from_estimate (between the worlds; without, the identity).
   ErrorStatistics ate;
   Rigid3d truth_from_estimate;
 
@@ -89,8 +85,7 @@ struct EvaluationReport {
   std::vector<PoseError> poses;
 };
 
-// Evaluates an estimate. Throws InputError for invalid options or if no poses
-// can be paired.
+// Throws InputError for invalid options or if no poses can be paired.
 EvaluationReport Evaluate(const Trajectory& estimate,
                           const Trajectory& ground_truth,
                           const EvaluationOptions& options = {});

@@ -12,10 +12,6 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kShiftUnit = 0.02;                        // s
-constexpr double kRotationUnit = 2.0 * kRadiansPerDegree;  // rad
-constexpr double kLeverUnit = 0.05;                        // m
-
 // A direction is named after time, rotation or lever if their share of its
 // squared norm exceeds this; the largest of three shares is at least a third.
 constexpr double kNamedShare = 0.3;
@@ -42,15 +38,12 @@ void NameAxes(const Eigen::Matrix<double, 3, Eigen::Dynamic>& part,
 
 using FixingJacobian = Eigen::Matrix<double, 6, 7>;
 
-constexpr double kMinTurnSigma = 1e-5;   // rad; no camera is better
-constexpr double kMinPlaceSigma = 1e-5;  // m
+constexpr double kMinSigma = 1e-5;  // rad and m; no camera is better
 
-// Tukey's width for the norm of six whitened differences, which is about
-// sqrt(6) for Gaussian ones.
+// Tukey's width for the norm of six whitened differences, about sqrt(6).
 constexpr double kTukeyWidth = 7.0;
 
-// Maximum reach of correlations over time, in durations of a motion and as a
-// share of the whole time.
+// Maximum reach of correlations, in motions and as a share of the whole time.
 constexpr double kMaxReachMotions = 5.0;
 constexpr double kMaxReachShare = 0.1;
 
@@ -75,13 +68,13 @@ MotionVector Whitening(const std::vector<MotionVector>& residuals) {
     for (int i = 0; i < 3; ++i) turns.push_back(std::abs(r[i]));
     for (int i = 3; i < 6; ++i) places.push_back(std::abs(r[i]));
   }
-  const auto weight = [](std::vector<double>* errors, double min_sigma) {
+  const auto weight = [](std::vector<double>* errors) {
     const double sigma = kSigmaOfMedian * QuantileInPlace(errors, 0.5);
-    return 1.0 / std::max(sigma, min_sigma);
+    return 1.0 / std::max(sigma, kMinSigma);
   };
   MotionVector whitening;
-  whitening.head<3>().setConstant(weight(&turns, kMinTurnSigma));
-  whitening.tail<3>().setConstant(weight(&places, kMinPlaceSigma));
+  whitening.head<3>().setConstant(weight(&turns));
+  whitening.tail<3>().setConstant(weight(&places));
   return whitening;
 }
 
@@ -89,8 +82,8 @@ MotionVector Whitening(const std::vector<MotionVector>& residuals) {
 
 FixingVector FixingUnits() {
   FixingVector units;
-  units << kShiftUnit, Eigen::Vector3d::Constant(kRotationUnit),
-      Eigen::Vector3d::Constant(kLeverUnit);
+  units << 0.02, Eigen::Vector3d::Constant(2.0 * kRadiansPerDegree),
+      Eigen::Vector3d::Constant(0.05);
   return units;
 }
 
@@ -145,7 +138,6 @@ PoseChange::PoseChange(const MovingPose& from, const MovingPose& to) {
 FixingEquations::FixingEquations(const std::vector<ComparedMotion>& motions,
                                  const Eigen::Vector3d& lever, double overlap)
     : overlap_(overlap) {
-  if (motions.empty()) return;
   std::vector<MotionVector> residuals;
   for (const ComparedMotion& motion : motions) {
     residuals.emplace_back();
@@ -203,9 +195,8 @@ FixingDirections FixingEquations::Determined(double limit, double min_agreement,
 }
 
 // Weights correlations down with time (Newey and West, Econometrica 55, 1987).
-// The reach must exceed the duration of a motion, since an error of the pose
-// between two motions has opposite signs in them, but not so far that only few
-// independent spans are left.
+// The reach must exceed the duration of a motion, as an error of the pose
+// between two motions has opposite signs in them, but leave independent spans.
 FixingMatrix FixingEquations::GradientCovariance() const {
   const double seconds = rows_.back().start - rows_.front().start;
   const double reach = std::clamp(kMaxReachShare * seconds, 2.0 * overlap_,

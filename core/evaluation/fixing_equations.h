@@ -10,8 +10,7 @@
 
 namespace rgbd_pose {
 
-// How the truth relates to the estimate: the time shift between the clocks, and
-// the pose of the tracked body relative to the camera.
+// The shift between the clocks, and the tracked body relative to the camera.
 struct TruthFixing {
   // s; time t of the estimate is time t + shift of the truth.
   double shift = 0.0;
@@ -21,8 +20,7 @@ struct TruthFixing {
 };
 
 // The fixing as parameters, in the order [shift, rotation vector, lever], in
-// units in which 1 is a large value: 20 ms, 2 degrees, 5 cm. A parameter that
-// is not known better than that is not worth correcting.
+// units in which 1 is a large value: 20 ms, 2 degrees, 5 cm.
 using FixingVector = Eigen::Matrix<double, 7, 1>;
 using FixingMatrix = Eigen::Matrix<double, 7, 7>;
 // Orthonormal directions of the parameters, as columns.
@@ -62,8 +60,7 @@ struct PoseChange {
   Twist rate;                   // of turn (first order) and translation
 };
 
-// The same camera motion according to the estimate and to the truth, the latter
-// for some fixing.
+// One camera motion in the estimate and, for some fixing, in the truth.
 struct ComparedMotion {
   double start = 0.0;  // s
   PoseChange estimate;
@@ -82,15 +79,12 @@ struct FixingEquations {
   int used() const { return static_cast<int>(rows_.size()); }
 
   // Returns the directions that the motions determine to better than `limit`
-  // (in units of FixingVector), and the others in `rest`. Noise of either
-  // trajectory looks like motion, but differs between the two. Only motion
-  // present in both counts, and it must be at least `min_agreement` (0 to 1,
-  // like a correlation) of the motion in each of them.
+  // (in units of FixingVector), and the others in `rest`. Only motion in both
+  // counts: at least `min_agreement` (0 to 1, like a correlation) of each.
   FixingDirections Determined(double limit, double min_agreement,
                               FixingDirections* rest) const;
 
-  // The covariance of the gradient, estimated from the differences themselves,
-  // which are correlated over time and vary in size.
+  // The covariance of the gradient, from differences correlated over time.
   FixingMatrix GradientCovariance() const;
 
   // A small step towards the minimum is hessian^-1 gradient.

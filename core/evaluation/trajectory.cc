@@ -16,8 +16,6 @@ constexpr std::array<std::string_view, 8> kColumns = {
     "timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 constexpr double kMaxQuaternionError = 0.01;  // deviation of its length from 1
 constexpr double kMaxCoordinate = 1e9;        // m; squares stay finite
-constexpr int kTimeDecimals = 6;
-constexpr int kPoseDecimals = 9;
 
 StampedPose ParsePose(const TextLine& line, const std::string& path) {
   if (line.words.size() != kColumns.size()) {
@@ -104,10 +102,10 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d& t = pose.world_from_cam.translation;
     const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
-    text += FixedNumber(pose.timestamp, kTimeDecimals);
+    text += FixedNumber(pose.timestamp, 6);
     for (const double value :
          {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ' + FixedNumber(value, kPoseDecimals);
+      text += ' ' + FixedNumber(value, 9);
     }
     text += '\n';
   }

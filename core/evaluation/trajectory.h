@@ -18,19 +18,16 @@ struct StampedPose {
 using Trajectory = std::vector<StampedPose>;
 
 // The pose (world_from_cam) at a time (s), interpolated between two poses: the
-// position linearly, the orientation spherically. Nothing before the first
-// pose, after the last, or in a gap of `max_gap` (s) or more: a hand can make
-// any motion within 50 ms.
+// position linearly, the orientation spherically. Nothing outside the poses or
+// in a gap of `max_gap` (s) or more: a hand can make any motion within 50 ms.
 std::optional<Rigid3d> InterpolatedPose(const Trajectory& trajectory,
                                         double time, double max_gap = 0.05);
 
 // Reads TUM text with one `timestamp tx ty tz qx qy qz qw` per line (world from
-// camera, metres). '#' comments and empty lines are skipped; CRLF and a byte
-// order mark are accepted. Quaternions within 1 % of unit length are
+// camera, metres; see ReadTextTable). Quaternions within 1 % of unit length are
 // normalised. If poses have the same timestamp, the first is kept, and a line
 // for users is added to `remarks` unless that is null. Throws InputError
-// (file:line) for anything else: missing columns, invalid numbers, NaN,
-// timestamps out of order, an empty list.
+// (file:line) for anything else, also for an empty list.
 Trajectory ReadTrajectory(const std::string& path,
                           std::vector<std::string>* remarks = nullptr);
 

@@ -14,12 +14,11 @@
 namespace rgbd_pose {
 namespace {
 
-// Compares an estimate with the interpolated truth under any clock shift and
-// fixing. Both trajectories must outlive it.
+// Compares an estimate with the interpolated truth under any fixing. Both
+// trajectories must outlive it.
 class TruthComparison {
  public:
-  // Duration of the compared motions: long enough for motion to outweigh noise,
-  // short enough for drift not to count.
+  // Of the compared motions: they outweigh noise, but drift does not count.
   static constexpr double kMotionSeconds = 0.2;
 
   TruthComparison(const Trajectory& estimate, const Trajectory& ground_truth)
@@ -37,8 +36,7 @@ class TruthComparison {
     for (size_t i = 0; i < all.size(); i += step) intervals_.push_back(all[i]);
   }
 
-  // Motions of the estimate for which the truth is known, in time order; a
-  // subset if there are too many.
+  // Motions for which the truth is known, in time order.
   std::vector<ComparedMotion> Motions(const TruthFixing& fixing) const {
     const auto truth = MovingPoses(times_, Truth(fixing));
     const auto& estimate = moving_estimate_;
@@ -86,9 +84,8 @@ constexpr int kMinMotions = 30;
 constexpr double kMaxShift = 0.5;       // s
 constexpr double kMaxShiftStep = 0.05;  // s; hand motion changes this fast
 
-// While the fixing is far off, the motions seem to contain little information.
-// The first rounds therefore use kFirstLimit and no minimum agreement. After
-// the open rounds the determined directions are frozen.
+// While the fixing is far off, motions seem to contain little information: the
+// first rounds use kFirstLimit only. Directions are frozen after the open ones.
 constexpr int kRounds = 40;
 constexpr int kOpenRounds = 20;
 constexpr int kFirstRounds = 10;

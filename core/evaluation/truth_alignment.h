@@ -9,12 +9,11 @@
 
 namespace rgbd_pose {
 
-// The clocks may differ, and a motion capture system tracks markers, not the
-// camera; the pose of the markers relative to the camera is only known to about
-// a degree. This is the clock shift and fixing at which estimate and truth
-// agree best, found from motions of 0.2 s, and the remaining errors. The part
-// of an error of the estimate that looks like one of these effects is removed,
-// too; therefore the plain errors should be shown first.
+// The clocks may differ, and a motion capture system tracks markers whose pose
+// relative to the camera is only known to about a degree. This is the clock
+// shift and fixing at which estimate and truth agree best, found from motions
+// of 0.2 s, and the remaining errors. As it also removes errors of the estimate
+// that look like these effects, the plain errors should be shown first.
 struct TruthAlignment {
   // Why the alignment is missing, as one line; empty if it exists.
   std::string skipped;
@@ -23,17 +22,16 @@ struct TruthAlignment {
   TruthFixing fixing;  // 0 in directions that the motion does not determine
 
   // Standard deviations of shift (s), rotation (rad, about the camera's axes)
-  // and lever (m, along these axes). Correlations between motions over time are
-  // included; infinite for parameters that the motion does not determine.
+  // and lever (m, along these axes), with correlations over time; infinite for
+  // parameters that the motion does not determine.
   FixingVector sigma = FixingVector::Zero();
 
   // Names of parameters that the motion does not determine to 20 ms, 2 degrees
   // and 5 cm, or for which estimate and truth have too little in common.
   std::vector<std::string> undetermined;
 
-  // Errors with this shift and fixing and the truth interpolated, over
-  // ate.count poses: distances (m) after a rigid alignment, and relative errors
-  // over rpe_delta_seconds.
+  // Errors with this fixing and the truth interpolated: distances (m) after a
+  // rigid alignment, and relative errors over rpe_delta_seconds.
   ErrorStatistics ate;
   RelativePoseError rpe_seconds;
 };

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/util/format.h"
-#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
@@ -23,9 +22,8 @@ Vector2d Distort(const Lens<double>& lens, const Vector2d& point) {
   return distorted;
 }
 
-// The inverse of Distort; the result is arbitrary if there is none. Divides by
-// the radial factor instead of subtracting the shift, since this contracts
-// faster for large k1.
+// The inverse of Distort; arbitrary if there is none. Divides by the radial
+// factor, which contracts faster for large k1 than subtracting the shift.
 Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
   Vector2d point = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
@@ -69,43 +67,29 @@ Vector2d InvertEquidistant(const Lens<double>& lens,
   return distorted * (std::tan(t) / wanted);
 }
 
-// Relative to the larger image side: views of 157 and of 0.6 degrees.
-constexpr double kMinFocal = 0.1;
-constexpr double kMaxFocal = 100.0;
+// TUM RGB-D benchmark, "intrinsic camera calibration" table; its depth factors
+// are already applied in the released images. Both sensors are read row by row
+// in about 28 ms (Kerl et al., ICCV 2015). How much earlier depth is exposed
+// than colour (s) depends on the driver of the recording: 15 to 20 ms for
+// freiburg1, 0 to 5 ms for freiburg3, unknown for freiburg2.
+RgbdCamera TumCamera(const Camera& camera, double depth_lead) {
+  constexpr Shutter kColor = {-0.0075, 0.028, true};
+  constexpr double kDepthReadout = 0.027;
+  return {
+      camera, 5000.0, {}, kColor, {kColor.offset - depth_lead, kDepthReadout}};
+}
 
-// TUM RGB-D benchmark, "intrinsic camera calibration" table. The depth factors
-// of each camera are already applied in the released images.
-constexpr double kTumDepthScale = 5000.0;
-
-// Both sensors of a Kinect and of an Xtion are read row by row in about 28 ms
-// (Kerl et al., ICCV 2015). How much earlier depth is exposed than colour
-// depends on the driver of the recording: 15 to 20 ms for freiburg1, 0 to 5 ms
-// for freiburg3, unknown for freiburg2.
-constexpr Shutter kTumColor = {-0.0075, 0.028, true};
-constexpr double kTumDepthReadout = 0.027;
 const Named<RgbdCamera> kPresets[] = {
     {"tum_fr1",
-     {{640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383,
-       -0.953104, -0.005358, 0.002628, 1.163314},
-      kTumDepthScale,
-      {},
-      kTumColor,
-      {kTumColor.offset - 0.0175, kTumDepthReadout}}},
+     TumCamera({640, 480, 517.306408, 516.469215, 318.643040, 255.313989,
+                0.262383, -0.953104, -0.005358, 0.002628, 1.163314},
+               0.0175)},
     {"tum_fr2",
-     {{640, 480, 520.908620, 521.007327, 325.141442, 249.701764, 0.231222,
-       -0.784899, -0.003257, -0.000105, 0.917205},
-      kTumDepthScale,
-      {},
-      kTumColor,
-      {kTumColor.offset, kTumDepthReadout}}},
-    {"tum_fr3",
-     {{640, 480, 535.4, 539.2, 320.1, 247.6, 0, 0, 0, 0, 0},
-      kTumDepthScale,
-      {},
-      kTumColor,
-      {kTumColor.offset - 0.0025, kTumDepthReadout}}},
-    {"ros_default",
-     {{640, 480, 525.0, 525.0, 319.5, 239.5, 0, 0, 0, 0, 0}, kTumDepthScale}},
+     TumCamera({640, 480, 520.908620, 521.007327, 325.141442, 249.701764,
+                0.231222, -0.784899, -0.003257, -0.000105, 0.917205},
+               0.0)},
+    {"tum_fr3", TumCamera({640, 480, 535.4, 539.2, 320.1, 247.6}, 0.0025)},
+    {"ros_default", {}},  // the defaults
 };
 
 }  // namespace
@@ -122,8 +106,8 @@ std::string Camera::Check() const {
            "images or use its TUM-compatible release)";
   }
   const double size = std::max(width, height);
-  for (const double f : {fx, fy}) {
-    if (f < kMinFocal * size || f > kMaxFocal * size) {
+  for (const double f : {fx, fy}) {  // views of 157 and of 0.6 degrees
+    if (f < 0.1 * size || f > 100.0 * size) {
       return "fx and fy must be in pixels: 0.1 to 100 times the image's size";
     }
   }
@@ -138,19 +122,17 @@ std::string Camera::Check() const {
 }
 
 std::string Camera::SanityWarning() const {
-  constexpr double kMaxAspect = 0.05;
-  constexpr double kMaxOffCentre = 0.1;
   const auto line = [](const std::string& what) {
     return "camera: " + what +
            ", which is unusual; check the order of the values and the image "
            "size";
   };
-  if (std::abs(fx / fy - 1.0) > kMaxAspect) {
+  if (std::abs(fx / fy - 1.0) > 0.05) {
     return line("fx " + ShortNumber(fx) + " and fy " + ShortNumber(fy) +
                 " differ by more than 5 %");
   }
-  if (std::abs(cx - 0.5 * (width - 1)) > kMaxOffCentre * width ||
-      std::abs(cy - 0.5 * (height - 1)) > kMaxOffCentre * height) {
+  if (std::abs(cx - 0.5 * (width - 1)) > 0.1 * width ||
+      std::abs(cy - 0.5 * (height - 1)) > 0.1 * height) {
     return line("the principal point (" + ShortNumber(cx) + ", " +
                 ShortNumber(cy) + ") is far from the middle of " +
                 std::to_string(width) + " x " + std::to_string(height) +
@@ -173,11 +155,6 @@ std::vector<double> Camera::Distortion() const {
 
 bool Camera::SetDistortion(LensModel model,
                            const std::vector<double>& coefficients) {
-  static constexpr double Camera::*kEquidistant[] = {&Camera::k1, &Camera::k2,
-                                                     &Camera::k3, &Camera::k4};
-  static constexpr double Camera::*kRational[] = {
-      &Camera::k1, &Camera::k2, &Camera::p1, &Camera::p2,
-      &Camera::k3, &Camera::k4, &Camera::k5, &Camera::k6};
   const bool is_equidistant = model == LensModel::kEquidistant;
   const size_t given = coefficients.size();
   const bool is_known =
@@ -187,10 +164,13 @@ bool Camera::SetDistortion(LensModel model,
         (given >= 8 && std::all_of(coefficients.begin() + 8, coefficients.end(),
                                    [](double c) { return c == 0.0; }))));
   if (!is_known) return false;
-  for (double Camera::*coefficient : kRational) this->*coefficient = 0.0;
   lens_model = model;
-  for (size_t i = 0; i < std::min<size_t>(given, 8); ++i) {
-    this->*(is_equidistant ? kEquidistant[i] : kRational[i]) = coefficients[i];
+  std::vector<double> all = coefficients;  // k1 k2 p1 p2 k3 k4 k5 k6
+  if (is_equidistant) all.insert(all.begin() + 2, 2, 0.0);
+  all.resize(8);
+  constexpr size_t kFirst = kCameraParameters.size() - 8;
+  for (size_t i = 0; i < 8; ++i) {
+    this->*kCameraParameters[kFirst + i].value = all[i];
   }
   return true;
 }
@@ -226,9 +206,8 @@ Vector2d Camera::Undistort(const Vector2d& pixel) const {
 }
 
 std::optional<RgbdCamera> CameraPreset(std::string_view name) {
-  const auto* const preset = FindNamed(kPresets, name);
-  if (preset == nullptr) return std::nullopt;
-  return preset->value;
+  if (const auto* preset = FindNamed(kPresets, name)) return preset->value;
+  return std::nullopt;
 }
 
 std::vector<std::string> CameraPresetNames() { return NamesOf(kPresets); }

@@ -9,7 +9,8 @@
 
 #include "core/geometry/lens.h"
 #include "core/geometry/rigid3.h"
-#include "core/geometry/shutter.h"
+#include "core/geometry/twist.h"
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 
@@ -43,15 +44,25 @@ struct Camera {
   // One line that says what is wrong with the parameters, or empty.
   std::string Check() const;
 
-  // One line that says what is unusual for an RGB-D camera, or empty: fx and fy
-  // that differ by more than 5 %, or a principal point off the image centre by
-  // more than a tenth of the image size. Both can be intended, but usually
-  // numbers were swapped or belong to another image size.
+  // One line that says what is unusual, or empty: fx and fy that differ by more
+  // than 5 %, or a principal point off the image centre by more than a tenth of
+  // the image size. Usually numbers were swapped or belong to another size.
   std::string SanityWarning() const;
 
   // The distortion functions, with coefficients of type S.
   template <typename S = double>
-  Lens<S> MakeLens() const;
+  Lens<S> MakeLens() const {
+    using Factor = typename Lens<S>::Factor;
+    Factor factor = Factor::kNone;
+    if (lens_model == LensModel::kEquidistant) {
+      factor = Factor::kEquidistant;
+    } else if (k4 != 0.0 || k5 != 0.0 || k6 != 0.0) {
+      factor = Factor::kRational;
+    } else if (HasDistortion()) {
+      factor = Factor::kPolynomial;
+    }
+    return {factor, S(k1), S(k2), S(p1), S(p2), S(k3), S(k4), S(k5), S(k6)};
+  }
 
   // Whether the lens distorts; an equidistant lens always does.
   bool HasDistortion() const;
@@ -67,8 +78,7 @@ struct Camera {
   // Image point (distorted px) of a point in camera axes; z must be > 0.
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
 
-  // Derivative of the image point with respect to `place` on the plane z = 1,
-  // px.
+  // Derivative of Project (px) with respect to `place` on the plane z = 1.
   Eigen::Matrix2d ProjectDerivative(const Eigen::Vector2d& place) const;
 
   // Ideal pixel (same fx, fy, cx, cy, no distortion) of an image pixel, to
@@ -76,8 +86,7 @@ struct Camera {
   // polynomial is not invertible.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
 
-  // The ray (a, b, 1) of an ideal pixel in camera axes. Multiplied by the
-  // depth, it gives the point.
+  // The ray (a, b, 1) of an ideal pixel; times the depth, it is the point.
   Eigen::Vector3d Ray(double u, double v) const {
     return {(u - cx) / fx, (v - cy) / fy, 1.0};
   }
@@ -97,11 +106,7 @@ struct Camera {
 };
 
 // A camera parameter with its name: all except the image size.
-struct CameraParameter {
-  const char* name;       // as in Camera
-  double Camera::*value;  // member of Camera
-};
-
+using CameraParameter = Named<double Camera::*>;
 // In the order of the members of Camera.
 inline constexpr std::array<CameraParameter, 12> kCameraParameters = {
     {{"fx", &Camera::fx},
@@ -117,34 +122,10 @@ inline constexpr std::array<CameraParameter, 12> kCameraParameters = {
      {"k5", &Camera::k5},
      {"k6", &Camera::k6}}};
 
-// The number of parameters in every camera file, from the first one on. The
-// others are written only if they are not 0.
+// Every camera file has this many; the others are written only if not 0.
 inline constexpr size_t kNumUsualParameters = 9;
 
-template <typename S>
-Lens<S> Camera::MakeLens() const {
-  using Factor = typename Lens<S>::Factor;
-  Lens<S> lens;
-  lens.k1 = S(k1);
-  lens.k2 = S(k2);
-  lens.p1 = S(p1);
-  lens.p2 = S(p2);
-  lens.k3 = S(k3);
-  lens.k4 = S(k4);
-  lens.k5 = S(k5);
-  lens.k6 = S(k6);
-  if (lens_model == LensModel::kEquidistant) {
-    lens.factor = Factor::kEquidistant;
-  } else if (k4 != 0.0 || k5 != 0.0 || k6 != 0.0) {
-    lens.factor = Factor::kRational;
-  } else if (HasDistortion()) {
-    lens.factor = Factor::kPolynomial;
-  }
-  return lens;
-}
-
-// Errors of a camera's depth images. They are corrected when the images are
-// read (frontend/sources/frame_assembly.h).
+// Errors of depth images, which sources correct.
 struct DepthCorrection {
   // 1 / z = 1 / measured z + this, 1/m.
   double inverse_depth_offset = 0.0;
@@ -158,7 +139,7 @@ struct DepthCorrection {
 struct RgbdCamera {
   Camera camera;                // of the colour image
   double depth_scale = 5000.0;  // raw units of the depth image per metre
-  DepthCorrection depth_correction = {};  // corrected by sources
+  DepthCorrection depth_correction = {};  // of its errors
   Shutter color_shutter = {};             // relative to the colour timestamp
   Shutter depth_shutter = {};             // relative to the depth timestamp
 };

@@ -15,8 +15,7 @@ struct PairMoments {
   Eigen::Vector3d target_mean = Eigen::Vector3d::Zero();
   Eigen::Vector3d source_mean = Eigen::Vector3d::Zero();
 
-  // Sums about the means: of weight * target * source^T, and of weight times
-  // both squared distances.
+  // Sums about the means: weight target source^T, and weight squared distances.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double spread = 0.0;
 
@@ -39,10 +38,8 @@ struct NearestRotation {
 // The rigid motion target_from_source, without scale, that minimises the
 // weighted sum of squared distances |target - target_from_source * source|^2
 // (Horn 1987; Umeyama 1991). Weights are inverse variances of one component of
-// that difference (1 / m^2).
-//
-// Empty if the motion is not determined: fewer than three pairs, or points on
-// one spot or line, or so close to one that noise alone could determine it.
+// that difference (1 / m^2). Empty if fewer than three pairs, or points so
+// close to a spot or line that noise alone could determine the motion.
 std::optional<Rigid3d> UmeyamaAlignment(const PairMoments& moments);
 
 }  // namespace rgbd_pose

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "core/util/named_values.h"
-
 namespace rgbd_pose {
 
 std::string DepthNoiseModel::Check() const {
@@ -29,14 +27,6 @@ const std::vector<DepthNoiseModel>& DepthNoiseModels() {
       {"constant", 0.005},
   };
   return models;
-}
-
-const DepthNoiseModel* FindDepthNoiseModel(std::string_view name) {
-  return FindNamed(DepthNoiseModels(), name);
-}
-
-std::vector<std::string> DepthNoiseModelNames() {
-  return NamesOf(DepthNoiseModels());
 }
 
 }  // namespace rgbd_pose

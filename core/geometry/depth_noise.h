@@ -1,15 +1,13 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 
-// Noise of one measured depth. Its standard deviation is
-//
-//   sigma(z) = constant + quadratic (z - centre)^2
-//
+// Noise of one measured depth: sigma(z) = constant + quadratic (z - centre)^2.
 // For a structured-light or stereo camera the quadratic part dominates: an
 // error of disparity is an error of inverse depth.
 struct DepthNoiseModel {
@@ -18,9 +16,8 @@ struct DepthNoiseModel {
   double quadratic = 0.0;  // 1/m
   double centre = 0.0;     // m
 
-  // Standard deviation of the mean of 3 x 3 neighbours, as a fraction of a
-  // single pixel's: 1/3 if their errors are independent, 1 if they are equal
-  // (assumed where nothing is known).
+  // Sigma of the mean of 3 x 3 neighbours, as a fraction of a single pixel's:
+  // 1/3 if their errors are independent, 1 if equal (assumed if unknown).
   double mean_share = 1.0;
 
   // The standard deviation (m) at a depth (m).
@@ -34,17 +31,11 @@ struct DepthNoiseModel {
   std::string Check() const;
 };
 
-// All depth noise models:
+// All depth noise models, for FindNamed:
 //   khoshelham  1.425e-3 z^2, Kinect v1 (Khoshelham & Elberink 2012)
 //   nguyen      0.0012 + 0.0019 (z - 0.4)^2, Kinect v1, head on (Nguyen, Izadi
 //               & Lovell 2012)
 //   constant    5 mm, for unknown sensors
 const std::vector<DepthNoiseModel>& DepthNoiseModels();
-
-// The model with this name, or null.
-const DepthNoiseModel* FindDepthNoiseModel(std::string_view name);
-
-// The names of all models.
-std::vector<std::string> DepthNoiseModelNames();
 
 }  // namespace rgbd_pose

@@ -10,8 +10,7 @@ enum class LensModel {
   kEquidistant,  // fisheye: k1 k2 k3 k4 (Kannala & Brandt, PAMI 2006)
 };
 
-// Distorted normalised image coordinates (x / z, y / z) and their derivatives
-// with respect to the undistorted ones.
+// Distorted coordinates (x / z, y / z) and derivatives by the undistorted ones.
 template <typename D>
 struct DistortedPoint {
   D x, y;
@@ -127,8 +126,7 @@ struct Lens {
   }
 
  private:
-  // Added to r^2 to avoid a division by 0 at the centre; too small to affect a
-  // coordinate or a derivative.
+  // Added to r^2 to avoid a division by 0; too small to affect results.
   static constexpr double kSmall = 1e-12;
 };
 

@@ -33,11 +33,6 @@ LinearizationPoint::LinearizationPoint(const Rigid3d& cur_from_prev)
   shared_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
-void LinearizationPoint::Share(const double* x) const {
-  shared_ = DerivativesAt(x);
-  shared_x_ = Eigen::Map<const MotionVector>(x);
-}
-
 MotionDerivatives LinearizationPoint::DerivativesAt(const double* x) const {
   MotionDerivatives motion;
   static_cast<RotationAndCenter<double>&>(motion) = PoseAt(x);
@@ -97,10 +92,6 @@ MotionVector MotionFromRigid(const Rigid3d& cur_from_prev) {
   }
   x.tail<3>() = -(R.transpose() * cur_from_prev.translation);
   return x;
-}
-
-Rigid3d RigidFromMotion(const MotionVector& x) {
-  return LinearizationPoint().CurFromPrev(x.data());
 }
 
 }  // namespace rgbd_pose

@@ -7,14 +7,13 @@
 #include "core/geometry/rigid3.h"
 #include "core/util/lane_math.h"
 
-// The motion between two frames in the six parameters of Lu (Tamkang 2016), to
-// the extent that published sources define them (docs/jacobian_tables.md):
+// The motion between two frames in the six parameters of Lu (Tamkang 2016; see
+// docs/jacobian_tables.md):
 //
 //   x = [alpha beta gamma Cx Cy Cz]   (rad, m)
 //   X_cur = R (X_prev - C),  R = Rz(gamma) Ry(beta) Rx(alpha)
 //
-// R turns axes of the previous camera into axes of the current one; C is the
-// centre of the current camera in the axes of the previous camera.
+// C is the centre of the current camera in the axes of the previous one.
 
 namespace rgbd_pose {
 
@@ -29,8 +28,7 @@ struct RotationAndCenter {
   Eigen::Matrix<T, 3, 1> C;  // current centre in the previous frame, m
 };
 
-// R, C and dR/d(alpha, beta, gamma) (Table 2.1) for hand-written Jacobians,
-// computed once per motion. dR/dC = 0 and dC/dC = I are not stored.
+// R, C and their derivatives (Table 2.1) except dR/dC = 0 and dC/dC = I.
 struct MotionDerivatives : RotationAndCenter<double> {
   std::array<Eigen::Matrix3d, 3> dR;  // by alpha, beta, gamma
 };
@@ -55,9 +53,8 @@ Eigen::Matrix<T, 3, 3> RotationFromAngles(const T* angles) {
 //
 //   R(x) = Rz Ry Rx(angles) R_origin,   C(x) = C_origin + [Cx Cy Cz]
 //
-// So dR/d(angle) is the matrix of Table 2.1 times R_origin, and dC/dC stays I:
-// the tables hold unchanged. With the identity as the origin, x is as in the
-// thesis.
+// So dR/d(angle) is the matrix of Table 2.1 times R_origin, and dC/dC stays I.
+// With the identity as the origin, x is as in the thesis.
 class LinearizationPoint {
  public:
   // The motion at x = 0; the identity by default.
@@ -80,11 +77,14 @@ class LinearizationPoint {
   // R, C and dR/d(alpha, beta, gamma) at x[6].
   MotionDerivatives DerivativesAt(const double* x) const;
 
-  // As DerivativesAt, but cached until another x is requested: shared by many
-  // residual blocks of one problem (Table 2.1). Not thread-safe.
+  // As DerivativesAt, but cached until another x is requested: shared by the
+  // residual blocks of a problem. Not thread-safe.
   const MotionDerivatives& CachedDerivativesAt(const double* x) const {
     const Eigen::Map<const MotionVector> at(x);
-    if (at != shared_x_) Share(x);
+    if (at != shared_x_) {
+      shared_ = DerivativesAt(x);
+      shared_x_ = at;
+    }
     return shared_;
   }
 
@@ -92,8 +92,6 @@ class LinearizationPoint {
   Rigid3d CurFromPrev(const double* x) const;
 
  private:
-  void Share(const double* x) const;
-
   Eigen::Matrix3d R_;
   Eigen::Vector3d C_;
   mutable MotionVector shared_x_;  // x of shared_; NaN if there is none
@@ -103,13 +101,19 @@ class LinearizationPoint {
 // R, C and the derivatives of a motion with respect to small changes of it.
 MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev);
 
-// Covariance of c_from_b * b_from_a from the covariances of both motions, which
-// are independent; all are of [omega C] as in MotionEstimate. To first order:
+// A measured motion between two frames, used to correct their poses later.
+struct RelativePose {
+  int ref = 0;                                     // the reference frame
+  int cur = 0;                                     // the other frame
+  Rigid3d cur_from_ref;                            // as measured
+  MotionMatrix covariance = MotionMatrix::Zero();  // as in MotionEstimate
+};
+
+// Covariance of c_from_b * b_from_a from those of both motions, which are
+// independent; all of [omega C] as in MotionEstimate. Errors to first order:
 //
 //   omega = omega_cb + R_cb omega_ba
-//   C     = C_ba + R_ba^T (C_cb + [C_cb]x omega_ba)
-//
-// where these are errors, except for the position C_cb in [C_cb]x.
+//   C     = C_ba + R_ba^T (C_cb + [position C_cb]x omega_ba)
 MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
                                 const MotionMatrix& covariance_cb,
                                 const Rigid3d& b_from_a,
@@ -121,10 +125,8 @@ double SquaredMahalanobisDistance(const Rigid3d& cur_from_prev,
                                   const Rigid3d& other,
                                   const MotionMatrix& covariance);
 
-// Converts a motion to the six parameters of the thesis (origin: the identity)
-// and back. |beta| <= pi/2; at beta = +-pi/2 alpha and gamma are not unique,
-// and one vector that reproduces the motion is returned.
+// The six parameters of a motion (origin: the identity). |beta| <= pi/2; at
+// beta = +-pi/2 alpha and gamma are not unique: one solution of them.
 MotionVector MotionFromRigid(const Rigid3d& cur_from_prev);
-Rigid3d RigidFromMotion(const MotionVector& x);
 
 }  // namespace rgbd_pose

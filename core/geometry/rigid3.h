@@ -4,11 +4,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-// Eigen chooses the alignment of its vectors and of its memory by the compiler
-// flags for the instruction set. If only parts of a program are compiled with
-// -march=native or -mavx2, two incompatible alignments meet and the program
-// crashes. RGBD_POSE_EIGEN_ALIGN is the alignment that the libraries were built
-// with (bytes), a usage requirement of rgbd_pose::core.
+// The alignment (bytes) of Eigen's memory that the libraries were built with, a
+// usage requirement of rgbd_pose::core. Eigen chooses it by the compiler flags
+// for the instruction set; a program that mixes two alignments crashes.
 #ifdef RGBD_POSE_EIGEN_ALIGN
 static_assert(EIGEN_MAX_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN &&
                   EIGEN_MAX_STATIC_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN,
@@ -37,8 +35,7 @@ inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
 // target_from_source * point_in_source. Inner names cancel in products:
 // a_from_c = a_from_b * b_from_c. Translation in metres.
 struct Rigid3d {
-  // Rotation of source axes into target axes, and the origin of the source in
-  // the target.
+  // Turns source axes into target axes; the source's origin in the target.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
@@ -78,8 +75,7 @@ struct Rigid3d {
     return Rigid3d(inverse, -(inverse * translation));
   }
 
-  // The rotation angle in [0, pi], rad. Accurate near 0, where acos(w) would
-  // lose half of the digits.
+  // The angle in [0, pi], rad. Near 0 acos(w) would lose half of the digits.
   double Angle() const {
     return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
   }

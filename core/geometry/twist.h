@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "core/geometry/rigid3.h"
-#include "core/geometry/shutter.h"
 
 namespace rgbd_pose {
 
@@ -19,7 +18,7 @@ struct Twist {
   }
 
   // Position of a static point (camera axes, m) in the axes of the camera after
-  // `seconds`, to second order. For double and for vectors of doubles.
+  // `seconds`, to second order.
   template <typename T>
   void MovePoint(const T* point, const T& seconds, T* moved) const {
     const Eigen::Vector3d& w = angular;
@@ -66,8 +65,29 @@ inline Twist TwistOf(const Rigid3d& later_from_earlier, double seconds) {
           -later_from_earlier.translation / seconds};
 }
 
-// Exposure times of the images of an RGB-D frame and the motion of the camera
-// meanwhile, needed to compute where points were at the frame's timestamp.
+// Exposure times of the rows of an image: row r of H is exposed at
+//
+//   stamp + offset + readout ((r + 1/2) / H - 1/2)
+//
+// in seconds. The readout time, from the first row to the last, is negative if
+// the last row comes first, 0 for a global shutter.
+struct Shutter {
+  double offset = 0.0;   // of the middle row, relative to the timestamp, s
+  double readout = 0.0;  // s
+
+  // Whether they were given; if not, a usual shutter adds uncertainty.
+  bool is_known = false;
+
+  // Whether all rows are exposed at the timestamp.
+  bool IsGlobal() const { return offset == 0.0 && readout == 0.0; }
+
+  // Exposure time of a row (px, may be fractional) after the timestamp, s.
+  double RowTime(double row, int height) const {
+    return offset + readout * ((row + 0.5) / height - 0.5);
+  }
+};
+
+// Exposure times of the images of a frame, and the camera's motion meanwhile.
 struct FrameTiming {
   Shutter color;  // relative to the frame's timestamp
   Shutter depth;  // also relative to the frame's timestamp

@@ -8,26 +8,18 @@
 namespace rgbd_pose {
 namespace {
 
-// Maximum number of matches, evenly spread: time and memory grow with its
-// square.
+// Evenly spread: time and memory grow with the square.
 constexpr int kMaxCliqueMatches = 500;
 
-// The matches that are consistent with each match.
-using ConsistencyGraph = std::vector<std::bitset<kMaxCliqueMatches>>;
-
-ConsistencyGraph ConsistencyOf(const std::vector<PointMatch>& matches) {
-  ConsistencyGraph graph(matches.size());
+// Howard's greedy clique: matches join in the order of their degrees.
+std::vector<int> GreedyClique(const std::vector<PointMatch>& matches) {
+  // The matches that are consistent with each match.
+  std::vector<std::bitset<kMaxCliqueMatches>> graph(matches.size());
   for (size_t i = 0; i < matches.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
       graph[i][j] = graph[j][i] = AreDistanceConsistent(matches[i], matches[j]);
     }
   }
-  return graph;
-}
-
-// Howard's greedy clique. Matches join in the order of their degrees; hence one
-// pass in that order is enough.
-std::vector<int> GreedyClique(const ConsistencyGraph& graph) {
   std::vector<int> order(graph.size());
   std::iota(order.begin(), order.end(), 0);
   std::vector<size_t> degrees;
@@ -51,10 +43,8 @@ std::vector<int> GreedyClique(const ConsistencyGraph& graph) {
 std::optional<Consensus> FindByClique(const Correspondences& matches) {
   const std::vector<PointMatch> points =
       PointMatches(matches, kMaxCliqueMatches);
-  const std::optional<Rigid3d> fit =
-      FitRigidTransform(points, GreedyClique(ConsistencyOf(points)));
-  if (!fit) return std::nullopt;
-  return FindConsensus(points, *fit, {});
+  return FindConsensus(points, FitRigidTransform(points, GreedyClique(points)),
+                       {});
 }
 
 }  // namespace rgbd_pose

@@ -74,37 +74,34 @@ bool AreDistanceConsistent(const PointMatch& a, const PointMatch& b,
   return change * change <= max_sigmas * max_sigmas * variance;
 }
 
-void FindInliers(const std::vector<PointMatch>& matches,
-                 const Rigid3d& cur_from_prev, std::vector<int>* inliers) {
+std::vector<int> FindInliers(const std::vector<PointMatch>& matches,
+                             const Rigid3d& cur_from_prev) {
   const Eigen::Matrix3d rotation = cur_from_prev.rotation.toRotationMatrix();
-  inliers->clear();
+  std::vector<int> inliers;
   for (size_t i = 0; i < matches.size(); ++i) {
     const double distance =
         matches[i].SquaredDistance(rotation, cur_from_prev.translation);
     if (distance <= kMaxSquaredDistance) {
-      inliers->push_back(static_cast<int>(i));
+      inliers.push_back(static_cast<int>(i));
     }
   }
+  return inliers;
 }
 
 std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
-                                       const Rigid3d& cur_from_prev,
+                                       std::optional<Rigid3d> cur_from_prev,
                                        const ConsensusOptions& options) {
   constexpr int kRefits = 2;
-  Consensus consensus{cur_from_prev, {}};
-  FindInliers(matches, cur_from_prev, &consensus.inliers);
-  for (int i = 0; i < kRefits; ++i) {
-    const std::optional<Rigid3d> fit =
-        FitRigidTransform(matches, consensus.inliers);
-    if (!fit) return std::nullopt;
-    consensus.cur_from_prev = *fit;
-    FindInliers(matches, *fit, &consensus.inliers);
+  std::vector<int> inliers;
+  for (int i = 0; cur_from_prev && i <= kRefits; ++i) {
+    inliers = FindInliers(matches, *cur_from_prev);
+    if (i < kRefits) cur_from_prev = FitRigidTransform(matches, inliers);
   }
   const double required = std::max<double>(
       options.min_inliers, options.min_inlier_share * matches.size());
-  if (consensus.inliers.size() < required) return std::nullopt;
-  for (int& inlier : consensus.inliers) inlier = matches[inlier].index;
-  return consensus;
+  if (!cur_from_prev || inliers.size() < required) return std::nullopt;
+  for (int& inlier : inliers) inlier = matches[inlier].index;
+  return Consensus{*cur_from_prev, inliers};
 }
 
 }  // namespace rgbd_pose

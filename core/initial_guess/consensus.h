@@ -7,7 +7,7 @@
 #include "core/estimation/correspondences.h"
 #include "core/geometry/closed_form.h"
 #include "core/geometry/rigid3.h"
-#include "core/util/chi_squared.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 
@@ -41,16 +41,14 @@ struct PointMatch {
 
   // Whitens cur - cur_from_prev * prev: inverse sigmas along u, v and z of the
   // current frame (1 / m), and the ray (x / z, y / z) there. The noise of the
-  // previous frame is taken along the same axes, which makes it independent of
-  // the motion. This is exact except for the parallax between the two rays.
+  // previous frame is taken along the same axes: exact but for the parallax.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d::Zero();
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
 
   // Mean inverse variance of one component of that difference, 1 / m^2.
   double weight = 0.0;
 
-  // Squared norm of the whitened difference: chi^2 with three degrees of
-  // freedom for right matches.
+  // Squared whitened difference: chi^2 with 3 degrees of freedom if right.
   double SquaredDistance(const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& translation) const {
     const Eigen::Vector3d e =
@@ -62,8 +60,7 @@ struct PointMatch {
   }
 };
 
-// The matches with a depth on both sides: all of them, or `max_count` evenly
-// spread over the list.
+// The matches with a depth on both sides, or `max_count` evenly spread ones.
 std::vector<PointMatch> PointMatches(const Correspondences& matches,
                                      size_t max_count);
 
@@ -80,8 +77,7 @@ struct Consensus {
 };
 
 struct ConsensusOptions {
-  // A motion counts as found if at least this many matches agree with it, and
-  // at least this share of those with a depth on both sides.
+  // At least so many matches, and this share of those with depths, must agree.
   int min_inliers = 6;
   double min_inlier_share = 0.1;
 };
@@ -102,21 +98,20 @@ std::optional<Rigid3d> FitRigidTransform(const std::vector<PointMatch>& matches,
 }
 
 // The indices of the matches that agree with a motion.
-void FindInliers(const std::vector<PointMatch>& matches,
-                 const Rigid3d& cur_from_prev, std::vector<int>* inliers);
+std::vector<int> FindInliers(const std::vector<PointMatch>& matches,
+                             const Rigid3d& cur_from_prev);
 
-// Refits the motion several times to the matches that agree with it. Empty if
-// too few agree or if they leave the motion undetermined.
+// Refits a motion several times to the matches that agree with it. Empty if
+// there is none, too few agree, or they leave the motion undetermined.
 std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
-                                       const Rigid3d& cur_from_prev,
+                                       std::optional<Rigid3d> cur_from_prev,
                                        const ConsensusOptions& options);
 
 // The motion that most matches agree with, by random samples of three matches
-// and closed form (Fischler & Bolles 1981). Each new best motion is refitted to
-// its inliers (Chum, Matas & Kittler 2003). Distances are whitened by the noise
-// of both frames; matches without a depth on both sides are ignored. The result
-// is reproducible bit by bit. Empty if too few matches agree or leave the
-// motion undetermined.
+// (Fischler & Bolles 1981). Each new best motion is refitted to its inliers
+// (Chum, Matas & Kittler 2003). Distances are whitened by the noise of both
+// frames. Reproducible bit by bit. Ignores matches without a depth on both
+// sides; empty as FindConsensus.
 std::optional<Consensus> FindByRansac(const Correspondences& matches,
                                       const ConsensusOptions& options = {});
 
@@ -124,10 +119,7 @@ std::optional<Consensus> FindByRansac(const Correspondences& matches,
 // found greedily: the match with the most consistent partners first, then the
 // next that is consistent with all taken so far (Howard, "Real-time stereo
 // visual odometry for autonomous ground vehicles", IROS 2008). Ties go to the
-// earlier match; nothing is random. The motion is fitted to the set in closed
-// form, then refitted to the matches that agree with it. Ignores matches
-// without a depth on both sides. Empty if too few agree or leave the motion
-// undetermined.
+// earlier match. Ignores and empty as FindByRansac.
 std::optional<Consensus> FindByClique(const Correspondences& matches);
 
 }  // namespace rgbd_pose

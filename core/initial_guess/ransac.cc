@@ -19,8 +19,6 @@ constexpr double kConfidence = 0.999;
 // Maximum number of matches, evenly spread over the list.
 constexpr int kMaxMatches = 1000;
 
-constexpr uint64_t kSeed = 1;
-
 // How many samples are needed if this share of the matches are inliers.
 int SamplesNeeded(double share) {
   const double needed =
@@ -31,9 +29,8 @@ int SamplesNeeded(double share) {
 std::optional<Rigid3d> BestOfSamples(const std::vector<PointMatch>& matches) {
   std::optional<Rigid3d> best;
   double best_cost = std::numeric_limits<double>::infinity();
-  // Takes a motion if it is better than the best one so far, by the sum of
-  // squared distances, each limited to the maximum of an inlier (MSAC; Torr &
-  // Zisserman 2000). Returns whether it was better.
+  // Takes a motion and returns true if the sum of squared distances, each
+  // limited to that of an inlier, is smaller (MSAC; Torr & Zisserman 2000).
   const auto improve = [&](const std::optional<Rigid3d>& motion) {
     if (!motion) return false;
     const Eigen::Matrix3d rotation = motion->rotation.toRotationMatrix();
@@ -47,8 +44,7 @@ std::optional<Rigid3d> BestOfSamples(const std::vector<PointMatch>& matches) {
     best = motion;
     return true;
   };
-  CounterRandom random(kSeed);
-  std::vector<int> inliers;
+  CounterRandom random(1);
   int num_samples = kMaxSamples;
   for (int i = 0; i < num_samples; ++i) {
     const auto sample =
@@ -60,9 +56,9 @@ std::optional<Rigid3d> BestOfSamples(const std::vector<PointMatch>& matches) {
         !improve(FitRigidTransform(matches, sample))) {
       continue;
     }
-    FindInliers(matches, *best, &inliers);
+    std::vector<int> inliers = FindInliers(matches, *best);
     if (improve(FitRigidTransform(matches, inliers))) {
-      FindInliers(matches, *best, &inliers);
+      inliers = FindInliers(matches, *best);
     }
     const double share = static_cast<double>(inliers.size()) / matches.size();
     num_samples = std::min(num_samples, SamplesNeeded(share));
@@ -76,9 +72,7 @@ std::optional<Consensus> FindByRansac(const Correspondences& matches,
                                       const ConsensusOptions& options) {
   const std::vector<PointMatch> points = PointMatches(matches, kMaxMatches);
   if (points.size() < 3) return std::nullopt;
-  const std::optional<Rigid3d> best = BestOfSamples(points);
-  if (!best) return std::nullopt;
-  return FindConsensus(points, *best, options);
+  return FindConsensus(points, BestOfSamples(points), options);
 }
 
 }  // namespace rgbd_pose

@@ -12,9 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Each graduation stage narrows the losses by this factor, starting from at
-// most kWidest times their widths: beyond that even least squares does not
-// help.
+// Graduation narrows the losses by this factor, from at most kWidest.
 constexpr double kNarrowing = 2.0;
 constexpr double kWidest = 1024.0;
 
@@ -28,13 +26,13 @@ double FirstWidth(const GraphTerms& graph) {
   for (const GraphTerms::Edge& edge : graph.edges) {
     if (edge.loss == nullptr || graph.IsIdle(edge.ref, edge.cur)) continue;
     // The squared residual of the edge in sigmas.
-    const Rigid3d motion = graph.Between(edge.ref, edge.cur);
-    RelativeMotion pair;
-    pair.motion = {motion.rotation.toRotationMatrix(),
-                   motion.Inverse().translation};
+    const Rigid3d motion = graph.poses[edge.cur].world_from_cam.Inverse() *
+                           graph.poses[edge.ref].world_from_cam;
     largest =
         std::max(largest, RelativePoseErrorTerm(edge.cur_from_ref, edge.root)
-                              .ResidualAt(pair, nullptr)
+                              .ResidualAt({motion.rotation.toRotationMatrix(),
+                                           motion.Inverse().translation},
+                                          nullptr)
                               .squaredNorm());
   }
   return std::clamp(std::sqrt(largest), 1.0, kWidest);
@@ -42,18 +40,20 @@ double FirstWidth(const GraphTerms& graph) {
 
 std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
-// The functions below return one line on why a graph cannot be solved, which
-// names poses by their numbers, or an empty text. Here: values that are not
-// finite, or an edge that does not connect two poses of the graph.
+// The functions below return one line on why a graph cannot be solved, or an
+// empty text. Here: invalid values, or an edge that does not connect two poses.
 std::string FindBadInput(const GraphTerms& graph) {
   for (size_t i = 0; i < graph.poses.size(); ++i) {
     if (graph.poses[i].world_from_cam.IsFinite()) continue;
     return NameOf(static_cast<int>(i)) + " is not finite";
   }
+  const auto has = [&graph](int pose) {
+    return pose >= 0 && pose < static_cast<int>(graph.poses.size());
+  };
   for (const GraphTerms::Edge& edge : graph.edges) {
     const std::string name =
         "the edge from " + NameOf(edge.ref) + " to " + NameOf(edge.cur);
-    if (!graph.Has(edge.ref) || !graph.Has(edge.cur) || edge.ref == edge.cur) {
+    if (!has(edge.ref) || !has(edge.cur) || edge.ref == edge.cur) {
       return name + " does not connect two poses of the graph";
     }
     if (!edge.cur_from_ref.IsFinite()) {
@@ -67,8 +67,8 @@ std::string FindBadInput(const GraphTerms& graph) {
 }
 
 // A pose with no connection to a fixed pose. Groups connected poses by the
-// smallest number among them (union-find). One more number than there are poses
-// stands for the world of all fixed ones.
+// smallest number among them (union-find); one more number stands for the world
+// of all fixed ones.
 std::string FindUnanchoredPose(const GraphTerms& graph) {
   const int world = static_cast<int>(graph.poses.size());
   std::vector<int> root(world + 1);
@@ -122,11 +122,10 @@ double PoseGraph::Round(double width, int max_iterations,
   // The origin is close to the solution: no damping is needed at the start.
   options.initial_trust_region_radius = 1e8;
   ceres::Solver::Summary summary;
-  problem.Solve(options, &summary);
+  ceres::Solve(options, problem.problem(), &summary);
   // The first entry is the start.
   solution->iterations +=
       std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  ++solution->rounds;
   solution->final_cost = summary.final_cost;
   if (!summary.IsSolutionUsable()) {
     solution->status = GraphStatus::kNotConverged;
@@ -156,8 +155,10 @@ GraphSolution PoseGraph::Solve() {
     return solution;
   }
   const std::vector<GraphTerms::Pose> before = graph_.poses;
-  solution.initial_cost = solution.final_cost =
-      GraphProblem(graph_, 1.0).Cost();
+  GraphProblem(graph_, 1.0)
+      .problem()
+      ->Evaluate({}, &solution.initial_cost, nullptr, nullptr, nullptr);
+  solution.final_cost = solution.initial_cost;
   if (options_.graduated) {
     for (double width = FirstWidth(graph_); width > 1.0; width /= kNarrowing) {
       if (std::isnan(Round(width, kGraphIterationsPerEarlyStage, &solution)))
@@ -181,12 +182,11 @@ GraphSolution PoseGraph::Solve() {
   return solution;
 }
 
-int PoseGraph::AddEdge(const RelativePose& edge,
-                       const ceres::LossFunction* loss) {
+void PoseGraph::AddEdge(const RelativePose& edge,
+                        const ceres::LossFunction* loss) {
   // A covariance that is not invertible has no finite root either.
   graph_.edges.push_back({edge.ref, edge.cur, edge.cur_from_ref,
                           SqrtInformation(edge.covariance.inverse()), loss});
-  return static_cast<int>(graph_.edges.size()) - 1;
 }
 
 std::vector<MotionMatrix> PoseGraph::MarginalCovariances(

@@ -7,12 +7,10 @@
 
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
-#include "core/pose_graph/relative_pose.h"
 
 namespace rgbd_pose {
 
-// The content of a PoseGraph: poses, referred to by their numbers, and the
-// motions measured between them.
+// The content of a PoseGraph: poses and the motions measured between them.
 struct GraphTerms {
   // A node of the graph.
   struct Pose {
@@ -29,16 +27,6 @@ struct GraphTerms {
   };
   std::vector<Pose> poses;  // index = number
   std::vector<Edge> edges;  // in the order of addition
-
-  // cur_from_ref according to the poses.
-  Rigid3d Between(int ref, int cur) const {
-    return poses[cur].world_from_cam.Inverse() * poses[ref].world_from_cam;
-  }
-
-  // Whether a pose has this number.
-  bool Has(int pose) const {
-    return pose >= 0 && pose < static_cast<int>(poses.size());
-  }
 
   // Whether an edge between the two poses has no effect.
   bool IsIdle(int ref, int cur) const {
@@ -62,8 +50,7 @@ struct PoseGraphOptions {
   // deviation (rad or m). Other parameters are held fixed or estimated with it.
   double max_standard_deviation = 0.5;
 
-  // Threads of the solver. Results are reproducible for a given number of
-  // threads, but may differ between numbers.
+  // Threads of the solver. Results may differ between numbers.
   int threads = 1;
 
   // One line that says what is wrong with the options, or empty.
@@ -94,16 +81,13 @@ struct GraphSolution {
   double initial_cost = 0.0;  // with the final widths of the losses
   double final_cost = 0.0;    // the same at the poses after solving
   int iterations = 0;         // of the solver, in all rounds
-  int rounds = 0;             // see PoseGraphOptions::max_rounds
 
   // Whether the poses are the ones that agree best with the edges.
   bool ok() const { return status == GraphStatus::kOk; }
 };
 
 // Poses that are optimised together until they agree best with the motions
-// measured between them (edges with covariances): a Ceres problem without
-// landmarks. Each edge has a loss, or null for least squares. Invalid data
-// gives a status of Solve, never an abort.
+// measured between them. Invalid data gives a status of Solve, never an abort.
 class PoseGraph {
  public:
   // Throws InputError for invalid options (see Check).
@@ -115,10 +99,10 @@ class PoseGraph {
     return num_poses() - 1;
   }
 
-  // `edge.ref` and `edge.cur` are numbers of poses. The loss must outlive the
-  // graph and applies to the whole edge: 6 whitened rows.
-  int AddEdge(const RelativePose& edge,
-              const ceres::LossFunction* loss = nullptr);
+  // `edge.ref` and `edge.cur` are numbers of poses. The loss (null: least
+  // squares) must outlive the graph and applies to all 6 whitened rows.
+  void AddEdge(const RelativePose& edge,
+               const ceres::LossFunction* loss = nullptr);
 
   // Sets the start of the next Solve, or the final value if the pose is fixed.
   void SetPose(int pose, const Rigid3d& world_from_cam) {
@@ -139,20 +123,17 @@ class PoseGraph {
     return graph_.poses[pose].world_from_cam;
   }
 
-  // Covariances of poses, [omega (rad), C (m)] with omega about the axes of the
-  // camera and C its centre in the world, after a successful Solve; zero for
-  // fixed poses. Each edge counts as independent of the others: see
-  // OvercountingFactor. Empty if they cannot be computed.
+  // Covariances of [omega (rad), C (m)], omega about the axes of the camera, C
+  // in the world, after a successful Solve; zero for fixed poses. All edges
+  // count as independent: see OvercountingFactor. Empty if not computable.
   std::vector<MotionMatrix> MarginalCovariances(
       const std::vector<int>& poses) const;
 
   // The factor by which information is counted too often: the number of edges
   // divided by the number of motions between the poses (1 for a tree). Edges
-  // between frames that see the same features share the noise of these
-  // features. If all pairs of k frames are matched, the k (k - 1) / 2 edges
-  // contain no more information than k - 1 edges: the covariances are too small
-  // by this factor. It is an upper bound: for independent edges (wheels, other
-  // features) the factor is 1.
+  // between frames that see the same features share their noise: if all pairs
+  // of k frames are matched, the k (k - 1) / 2 edges contain no more
+  // information than k - 1 edges. An upper bound: 1 for independent edges.
   double OvercountingFactor() const;
 
  private:

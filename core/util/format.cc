@@ -30,10 +30,9 @@ std::string FixedNumber(double value, int decimals) {
 }
 
 std::string NumberTo(double value, double sigma) {
-  constexpr int kMostDecimals = 9;
   if (!(sigma > 0.0)) return Format("%.6g", value);
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(sigma)));
-  return FixedNumber(value, std::max(0, std::min(kMostDecimals, decimals)));
+  return FixedNumber(value, std::clamp(decimals, 0, 9));
 }
 
 std::string ShortNumber(double value) {

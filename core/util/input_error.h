@@ -6,9 +6,8 @@
 namespace rgbd_pose {
 
 // Thrown for invalid input from outside (files, images, settings). The message
-// is one line that says what is wrong, where (file:line if known) and how to
-// fix it. Programs print it and exit with code 2. Control characters in quoted
-// input are replaced by spaces to keep the message on one line.
+// is one line (control characters become spaces): what is wrong, where and how
+// to fix it. Programs print it and exit with code 2.
 class InputError : public std::runtime_error {
  public:
   // The second constructor puts the place (file:line) before the message.

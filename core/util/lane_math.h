@@ -5,21 +5,20 @@
 #include <type_traits>
 
 // Arithmetic shared by the residuals, for double, ceres::Jet, vectors of
-// doubles (core/util/vector_lanes.h) and mixes of them. Always inlined: GCC's
-// inlining budget runs out within costs/cost_factory.cc, and a call here makes
-// a whole solve slower by half. Other functions return results through
-// pointers: how vectors are returned depends on the instruction set.
+// doubles (core/util/vector_lanes.h) and mixes of them. Always inlined: a call
+// here, once GCC's inlining budget has run out, makes a whole solve slower by
+// half. Other functions return results through pointers: how vectors are
+// returned depends on the instruction set.
 
 namespace rgbd_pose {
 
-// The functions below return vectors. As they are always inlined, no calling
-// convention applies. The warning stays off: their callers would get it, too.
+// Functions that return vectors are always inlined: no calling convention
+// applies. The warning stays off: their callers would get it, too.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 // The standard functions for all scalar types. A residual outside this
-// namespace writes `using rgbd_pose::log;` instead of `using std::log;`:
-// argument-dependent lookup does not find functions for a vector of doubles,
-// which belongs to no namespace (it does for a Jet).
+// namespace writes `using rgbd_pose::log;` instead of `using std::log;`, as a
+// vector of doubles belongs to no namespace that would be searched.
 template <typename T>
 constexpr bool kIsLanes = !std::is_arithmetic_v<T> && !std::is_class_v<T>;
 

@@ -8,7 +8,7 @@ namespace rgbd_pose {
 
 // Calls f(i) for i = 0 .. n - 1 on `threads` threads, including the calling
 // one. The assignment of i to threads is fixed; f must not throw. Only worth it
-// for tasks of milliseconds, as each call starts new threads.
+// for tasks of milliseconds.
 template <typename Function>
 void ParallelFor(int n, int threads, const Function& f) {
   threads = std::min(threads, n);

@@ -13,9 +13,9 @@ struct TextLine {
   std::vector<std::string> words;
 };
 
-// The data lines of a text file with columns separated by white space or
-// commas. Comments ('#' to the end of the line), empty lines, carriage returns
-// and a byte order mark are skipped. Throws InputError if it cannot be read.
+// The lines of a file with columns separated by white space or commas, without
+// comments ('#' to the end of the line), empty lines, carriage returns and a
+// byte order mark. Throws InputError if it cannot be read.
 std::vector<TextLine> ReadTextTable(const std::string& path);
 
 // The same for the content of a file.
@@ -36,8 +36,7 @@ std::string Join(const std::vector<std::string>& names,
 double ParseNumber(std::string_view word, const std::string& path, int line,
                    std::string_view what);
 
-// A timestamp in seconds. As ParseNumber, but also rejects times in milli- or
-// nanoseconds since 1970.
+// A time in seconds: as ParseNumber, but not milli- or nanoseconds since 1970.
 double ParseTimestamp(std::string_view word, const std::string& path, int line);
 
 // Whether the file or folder exists; false, too, if this cannot be determined.
@@ -49,8 +48,7 @@ bool IsFile(const std::filesystem::path& path);
 // The whole content of a file. Throws InputError if it cannot be read.
 std::string ReadTextFile(const std::string& path);
 
-// What a file survives while it is being written: afterwards either the old or
-// the new content is there.
+// What a file survives while it is written, with its old or its new content.
 enum class Durability {
   kCrash,      // a crash of the program
   kPowerLoss,  // also a power loss: data are on disk before the renaming
@@ -64,12 +62,11 @@ void WriteFileAtomically(const std::string& path, std::string_view content,
 // The path WriteFileAtomically writes to before it renames the file.
 std::string TemporaryPath(const std::string& path);
 
-// Flushes new, changed and removed names in a folder to disk. Throws InputError
-// on failure.
+// Flushes names in a folder to disk. Throws InputError on failure.
 void SyncFolder(const std::string& path);
 
-// Throws InputError if WriteFileAtomically could not write the file, to report
-// this before a long computation and not after it. Changes nothing.
+// Throws InputError if WriteFileAtomically could not write the file: to report
+// this before a long computation.
 void RequireWritable(const std::string& path);
 
 }  // namespace rgbd_pose

@@ -9,8 +9,7 @@
 namespace rgbd_pose {
 
 // A 64-bit hash of texts or bytes, the same on every platform: FNV-1a (Fowler,
-// Noll & Vo). It detects accidental, not malicious, differences; changing one
-// byte always changes the hash.
+// Noll & Vo). It detects accidental, not malicious, differences.
 class TextHash {
  public:
   // Adds a text and its length: "a", "bc" differ from "ab", "c".

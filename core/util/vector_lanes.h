@@ -1,8 +1,7 @@
 #pragma once
 
 // Vectors of doubles as compiler extensions (GCC, Clang), with the instruction
-// set chosen at run time: a build for any x86-64 uses AVX-512 or AVX2 if
-// available.
+// set chosen at run time: AVX-512 or AVX2 if available.
 
 namespace rgbd_pose {
 
@@ -18,9 +17,9 @@ struct Lanes {
 
 namespace packed {
 
-// flatten inlines all calls. Only these copies are compiled for the instruction
-// set, and no function shared with the rest of the program is. With GCC's
-// sanitizers this takes many minutes; there it is limited to the kernel itself.
+// flatten inlines all calls, so that no function shared with the rest of the
+// program is compiled for the instruction set. With GCC's sanitizers this takes
+// many minutes; there it is limited to the kernel itself.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RGBD_POSE_TARGET(set) [[gnu::target(set)]]
 #else
@@ -40,11 +39,6 @@ void RunAvx2(Args... args) {
 }
 
 #undef RGBD_POSE_TARGET
-
-template <typename Kernel, typename... Args>
-void RunBaseline(Args... args) {
-  Kernel::template Run<2>(*args...);
-}
 
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
@@ -80,10 +74,8 @@ void RunVectorised(const Args&... args) {
     case packed::InstructionSet::kBaseline:
       break;
   }
-  packed::RunBaseline<Kernel>(&args...);
-#else
-  Kernel::template Run<2>(args...);
 #endif
+  Kernel::template Run<2>(args...);
 }
 
 }  // namespace rgbd_pose

@@ -2,9 +2,7 @@
 
 #include <condition_variable>
 #include <deque>
-#include <functional>
 #include <future>
-#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -15,9 +13,8 @@
 
 namespace rgbd_pose {
 
-// Lowers the priority of the calling thread, and of the threads it starts,
-// below the other threads of the program: for work that nobody waits for yet.
-// Has an effect only on Linux, where each thread has its own priority.
+// Lowers the priority of the calling thread and of those it starts, for work
+// that nobody waits for yet. Only Linux has priorities of threads.
 inline void LowerThreadPriority() {
 #ifdef __linux__
   constexpr int kSteps = 5;  // a third of the time of an equal thread
@@ -45,12 +42,11 @@ class Worker {
   // The future returns the result of the task or throws its exception.
   template <typename Task>
   auto Submit(Task task) -> std::future<decltype(task())> {
-    auto packaged = std::make_shared<std::packaged_task<decltype(task())()>>(
-        std::move(task));
-    auto result = packaged->get_future();
+    std::packaged_task<decltype(task())()> packaged(std::move(task));
+    auto result = packaged.get_future();
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      tasks_.push_back([packaged] { (*packaged)(); });
+      tasks_.emplace_back(std::move(packaged));
     }
     changed_.notify_one();
     return result;
@@ -60,7 +56,7 @@ class Worker {
   void Work() {
     LowerThreadPriority();
     while (true) {
-      std::function<void()> task;
+      std::packaged_task<void()> task;
       {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [this] { return is_over_ || !tasks_.empty(); });
@@ -74,7 +70,7 @@ class Worker {
 
   std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
-  std::deque<std::function<void()>> tasks_;
+  std::deque<std::packaged_task<void()>> tasks_;
   bool is_over_ = false;
   std::thread thread_;
 };

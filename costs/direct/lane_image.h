@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/geometry/camera.h"
-#include "core/geometry/shutter.h"
 #include "core/geometry/twist.h"
 
 // Image operations of the direct costs, for double and for vectors of doubles

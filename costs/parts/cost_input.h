@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/estimation/correspondences.h"
-#include "core/estimation/motion_prior.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {

@@ -20,7 +20,7 @@ struct FrontendOptions {
   Camera camera;  // of all frames
 
   // The noise model of measured depths.
-  DepthNoiseModel depth_noise = *FindDepthNoiseModel("khoshelham");
+  DepthNoiseModel depth_noise = *FindNamed(DepthNoiseModels(), "khoshelham");
 
   // The number of features wanted in a reference frame.
   int max_features = 600;

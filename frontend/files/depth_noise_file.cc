@@ -2,6 +2,7 @@
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/files/yaml_section.h"
 
@@ -38,11 +39,13 @@ DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
 }
 
 DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file) {
-  if (const auto* row = FindDepthNoiseModel(name_or_file)) return *row;
+  if (const auto* row = FindNamed(DepthNoiseModels(), name_or_file)) {
+    return *row;
+  }
   if (IsFile(name_or_file)) return ReadDepthNoiseFile(name_or_file);
-  throw InputError(
-      "unknown depth noise '" + name_or_file +
-      "': no such file; available models: " + Join(DepthNoiseModelNames()));
+  throw InputError("unknown depth noise '" + name_or_file +
+                   "': no such file; available models: " +
+                   Join(NamesOf(DepthNoiseModels())));
 }
 
 }  // namespace rgbd_pose

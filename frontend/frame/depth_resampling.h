@@ -6,7 +6,6 @@
 #include <opencv2/core.hpp>
 #include <opencv2/core/hal/intrin.hpp>
 
-#include "core/util/floor.h"
 #include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
@@ -21,8 +20,8 @@ constexpr int kMaxStepShift = 6;  // 2^-6
 // Raw depth of an image (CV_16UC1, 0: none) between pixels of one surface,
 // otherwise of the nearest pixel; 0 outside.
 inline float SampleDepth(const cv::Mat& depth, float u, float v) {
-  const int left = FloorToInt(u);
-  const int above = FloorToInt(v);
+  const int left = cvFloor(u);
+  const int above = cvFloor(v);
   const float right = u - static_cast<float>(left);
   const float down = v - static_cast<float>(above);
   const int column = left + (right >= 0.5F);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/util/floor.h"
 #include "frontend/frame/depth_resampling.h"
 
 namespace rgbd_pose {
@@ -161,8 +160,8 @@ void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow,
                                const Eigen::Vector2f& displacement) {
   const float u = displacement.x();
   const float v = displacement.y();
-  const int left = FloorToInt(u);
-  const int above = FloorToInt(v);
+  const int left = cvFloor(u);
+  const int above = cvFloor(v);
   const float right = u - static_cast<float>(left);
   const float down = v - static_cast<float>(above);
   const float scale = 1.0F / flow.stretch;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/util/floor.h"
 #include "core/util/parallel_for.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/fusion/voxel_key.h"
@@ -149,8 +148,8 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
         const float z = end + from_end;
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
         if (!(at.cwiseAbs().maxCoeff() < kVoxelKeyRange - 1)) continue;
-        const Eigen::Vector3i cell(FloorToInt(at.x()), FloorToInt(at.y()),
-                                   FloorToInt(at.z()));
+        const Eigen::Vector3i cell(cvFloor(at.x()), cvFloor(at.y()),
+                                   cvFloor(at.z()));
         const SeenBlock block(VoxelKey(cell), std::abs(from_end) > near);
         if (block == last[i]) continue;
         last[i] = block;

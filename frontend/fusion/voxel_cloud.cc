@@ -1,8 +1,8 @@
 #include "frontend/fusion/voxel_cloud.h"
 
 #include <cmath>
+#include <opencv2/core.hpp>
 
-#include "core/util/floor.h"
 #include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
@@ -19,7 +19,7 @@ void VoxelCloud::Add(const ColoredPoint& point) {
     const float x = point.position[i] * voxels_per_metre_;
     // The negated condition also rejects NaN.
     if (!(x >= -kVoxelKeyRange && x < kVoxelKeyRange)) return;
-    cell[i] = FloorToInt(x);
+    cell[i] = cvFloor(x);
   }
   const uint64_t key = VoxelKey(cell);
   Voxel* voxel = FindOrInsert(key);

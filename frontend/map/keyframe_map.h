@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/pose_graph/relative_pose.h"
+#include "core/geometry/motion.h"
 #include "frontend/places/keyframe.h"
 
 namespace rgbd_pose {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/pose_graph/pose_graph.h"
-#include "core/pose_graph/relative_pose.h"
 
 namespace rgbd_pose {
 

@@ -38,8 +38,8 @@ constexpr double kMaxProportionalError = 0.1;
 KeyframeGraph::KeyframeGraph(int window, double drift)
     : window_(window),
       drift_(drift),
-      tracked_loss_(FindMEstimator("huber")->make(kTrackedWidth)),
-      pair_loss_(FindMEstimator("cauchy")->make(kPairWidth)) {}
+      tracked_loss_(FindNamed(MEstimators(), "huber")->make(kTrackedWidth)),
+      pair_loss_(FindNamed(MEstimators(), "cauchy")->make(kPairWidth)) {}
 
 MotionMatrix KeyframeGraph::CovarianceOf(const RelativePose& edge) const {
   MotionMatrix covariance = edge.covariance;

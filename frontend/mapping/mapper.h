@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
-#include "core/pose_graph/relative_pose.h"
 #include "frontend/frame/view_overlap.h"
 #include "frontend/map/keyframe_map.h"
 #include "frontend/mapping/keyframe_graph.h"

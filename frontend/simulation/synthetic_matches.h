@@ -6,7 +6,6 @@
 #include <random>
 
 #include "core/estimation/correspondences.h"
-#include "core/estimation/motion_prior.h"
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
@@ -61,7 +60,8 @@ class RandomWorld {
     cur->depth = point.z();
     for (Observation* o : {prev, cur}) {
       o->sigma_px = 0.5;
-      o->sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o->depth);
+      o->sigma_depth =
+          FindNamed(DepthNoiseModels(), "khoshelham")->sigma(o->depth);
     }
   }
 

@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "core/geometry/shutter.h"
+#include "core/geometry/twist.h"
 #include "frontend/simulation/synthetic_texture.h"
 
 namespace rgbd_pose {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/util/floor.h"
 #include "core/util/vector_lanes.h"
 #include "frontend/simulation/synthetic_hash.h"
 
@@ -129,8 +128,8 @@ float Signed(uint32_t hash, int byte) {
 template <typename Use>
 void ForCellsUnderPixel(float x, float y, float footprint_x, float footprint_y,
                         uint32_t seed, Use use) {
-  const int i = FloorToInt(x - 0.5f);
-  const int j = FloorToInt(y - 0.5f);
+  const int i = cvFloor(x - 0.5f);
+  const int j = cvFloor(y - 0.5f);
   const float wx =
       Clamp01((x - 1.0f - static_cast<float>(i)) / footprint_x + 0.5f);
   const float wy =
@@ -177,7 +176,7 @@ float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
                      });
   if (word == 0.0f) return 0.0f;
   const float line =
-      y - kLineHeight * static_cast<float>(FloorToInt(y / kLineHeight));
+      y - kLineHeight * static_cast<float>(cvFloor(y / kLineHeight));
   word *= Clamp01(line / height) * Clamp01((kGlyphHeight - line) / height);
   float bit = 0.0f;
   ForCellsUnderPixel(x, y, width, height, seed + 1,

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "core/estimation/correspondences.h"
 #include "core/estimation/frame_view.h"
 #include "core/estimation/motion_estimate.h"
-#include "core/estimation/motion_prior.h"
 #include "core/geometry/rigid3.h"
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"

@@ -30,7 +30,7 @@ class AssemblyTest
     : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
   AssemblyTest() {
-    const MEstimator* row = FindMEstimator(std::get<1>(GetParam()));
+    const MEstimator* row = FindNamed(MEstimators(), std::get<1>(GetParam()));
     cost_ = MakeCost(std::get<0>(GetParam()));
     // Wide enough for all weights to differ from 0 at the guess.
     if (row->make != nullptr) {

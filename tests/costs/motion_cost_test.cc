@@ -303,7 +303,7 @@ TEST_F(MotionCostTest, IsAssociatedAfterEveryStep) {
 TEST_F(MotionCostTest, EachGroupHasItsOwnScale) {
   const Correspondences matches = RandomWorld(3).Matches(60, 0.0, Truth());
   EstimatorOptions options;
-  options.scale = FindScaleEstimator("mad")->estimate;
+  options.scale = MadScale;
   const auto estimate = [&](double sigma, int group) {
     std::vector<RobustCost> terms;
     terms.push_back({MakeCost("mahalanobis_point"), nullptr});

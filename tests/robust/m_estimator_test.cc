@@ -119,7 +119,7 @@ TEST(MEstimatorTest, AreThePublishedFormulas) {
 // From a tenth of the width on, epsilon changes a weight by less than 1 %.
 TEST(MEstimatorTest, EpsilonIsSmall) {
   for (const std::string name : {"l1", "lp"}) {
-    const auto loss = FindMEstimator(name)->make(1.0);
+    const auto loss = FindNamed(MEstimators(), name)->make(1.0);
     const double expected = Published(name, 0.1, 1.0).weight;
     EXPECT_NEAR(Evaluate(*loss, 0.01).first, expected, 0.01 * expected);
   }
@@ -203,10 +203,10 @@ TEST(MEstimatorTest, AScaledLossIsTheLossOfScaledWidth) {
 
 TEST(MEstimatorTest, FindsByName) {
   for (const std::string& name : MEstimatorNames()) {
-    ASSERT_NE(FindMEstimator(name), nullptr);
-    EXPECT_EQ(FindMEstimator(name)->name, name);
+    ASSERT_NE(FindNamed(MEstimators(), name), nullptr);
+    EXPECT_EQ(FindNamed(MEstimators(), name)->name, name);
   }
-  EXPECT_EQ(FindMEstimator("tuckey"), nullptr);
+  EXPECT_EQ(FindNamed(MEstimators(), "tuckey"), nullptr);
 }
 
 TEST(ParseLossTest, TakesANameOrANameAndAWidth) {

@@ -88,7 +88,8 @@ TEST(MEstimatorWidthTest, ScalarWidthsAreTheKnownOnes) {
                                                {"welsch", 2.9846},
                                                {"tukey", 4.6851}};
   for (const auto& [name, width] : known) {
-    EXPECT_NEAR(FindMEstimator(name)->Width95(1), width, 1e-4) << name;
+    EXPECT_NEAR(FindNamed(MEstimators(), name)->Width95(1), width, 1e-4)
+        << name;
   }
 }
 

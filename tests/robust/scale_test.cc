@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/util/named_values.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -202,15 +204,11 @@ TEST(ScaleTest, HasADefinedAnswerForFewAndEqualValues) {
   }
 }
 
-TEST(ScaleTest, FindsByName) {
-  EXPECT_EQ(ScaleEstimatorNames(),
+TEST(ScaleTest, HasTheseNames) {
+  EXPECT_EQ(NamesOf(ScaleEstimators()),
             (std::vector<std::string>{"fixed", "mad", "sn", "qn"}));
-  for (const std::string& name : ScaleEstimatorNames()) {
-    ASSERT_NE(FindScaleEstimator(name), nullptr);
-    EXPECT_EQ(FindScaleEstimator(name)->name, name);
-  }
-  EXPECT_EQ(FindScaleEstimator("fixed")->estimate, nullptr);
-  EXPECT_EQ(FindScaleEstimator("MAD"), nullptr);
+  EXPECT_EQ(FindNamed(ScaleEstimators(), "fixed")->estimate, nullptr);
+  EXPECT_EQ(FindNamed(ScaleEstimators(), "mad")->estimate, MadScale);
 }
 
 }  // namespace

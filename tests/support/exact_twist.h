@@ -2,7 +2,6 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "core/geometry/shutter.h"
 #include "core/geometry/twist.h"
 
 namespace rgbd_pose {

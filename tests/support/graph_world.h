@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/motion.h"
 #include "core/pose_graph/pose_graph.h"
-#include "core/pose_graph/relative_pose.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {

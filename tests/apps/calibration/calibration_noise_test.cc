@@ -77,7 +77,8 @@ struct NoisyScene {
   }
 
   std::optional<DepthNoiseFit> Fit() const {
-    return FitDepthNoise(views, state, *FindDepthNoiseModel("khoshelham"));
+    return FitDepthNoise(views, state,
+                         *FindNamed(DepthNoiseModels(), "khoshelham"));
   }
 };
 

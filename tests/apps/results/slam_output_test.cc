@@ -227,13 +227,12 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     const G2oPose& j = graph.poses.at(1);
     const MotionVector e = graph.edges[0].error.Of(i.t, i.q, j.t, j.q);
 
-    RelativeMotion pair;
-    pair.motion = {motion.rotation.toRotationMatrix(),
-                   motion.Inverse().translation};
     const MotionVector r =
         RelativePoseErrorTerm(edge.cur_from_ref,
                               SqrtInformation(edge.covariance.inverse()))
-            .ResidualAt(pair, nullptr);
+            .ResidualAt({motion.rotation.toRotationMatrix(),
+                         motion.Inverse().translation},
+                        nullptr);
     const double cost = (graph.edges[0].error.root * e).squaredNorm();
     EXPECT_NEAR(cost, r.squaredNorm(), 1e-6 * r.squaredNorm());
   }

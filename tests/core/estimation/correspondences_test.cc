@@ -58,10 +58,11 @@ TEST(CorrespondencesTest, PointIsOnTheRayAtItsDepth) {
 }
 
 TEST(DepthNoiseTest, ModelsAreThePublishedOnes) {
-  EXPECT_DOUBLE_EQ(FindDepthNoiseModel("khoshelham")->sigma(2.0), 5.7e-3);
-  EXPECT_DOUBLE_EQ(FindDepthNoiseModel("nguyen")->sigma(1.4), 3.1e-3);
-  EXPECT_DOUBLE_EQ(FindDepthNoiseModel("constant")->sigma(3.0), 5e-3);
-  EXPECT_EQ(FindDepthNoiseModel("unknown"), nullptr);
+  EXPECT_DOUBLE_EQ(FindNamed(DepthNoiseModels(), "khoshelham")->sigma(2.0),
+                   5.7e-3);
+  EXPECT_DOUBLE_EQ(FindNamed(DepthNoiseModels(), "nguyen")->sigma(1.4), 3.1e-3);
+  EXPECT_DOUBLE_EQ(FindNamed(DepthNoiseModels(), "constant")->sigma(3.0), 5e-3);
+  EXPECT_EQ(FindNamed(DepthNoiseModels(), "unknown"), nullptr);
   for (const DepthNoiseModel& model : DepthNoiseModels()) {
     EXPECT_EQ(model.Check(), "") << model.name;
   }

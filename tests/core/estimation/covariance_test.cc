@@ -109,7 +109,7 @@ TEST(CovarianceOfAPriorTest, DoesNotDependOnTheNoiseOfMatches) {
 // motion and in its covariance.
 TEST(CovarianceOfAPriorTest, IsHonestWhereTheScaleIsEstimated) {
   EstimatorOptions options;
-  options.scale = FindScaleEstimator("mad")->estimate;
+  options.scale = MadScale;
   Estimator estimator(
       options,
       MakeRobustCosts("reprojection_depth+motion_prior", "tukey,none"));

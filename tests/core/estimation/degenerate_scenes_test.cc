@@ -50,7 +50,8 @@ Correspondences MatchesOnAPlane(int count, double depth, const Rigid3d& truth,
     cur.depth = point.z();
     cur.normal = truth.rotation * Eigen::Vector3d(0.0, 0.0, -1.0);
     for (Observation* o : {&prev, &cur}) {
-      o->sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o->depth);
+      o->sigma_depth =
+          FindNamed(DepthNoiseModels(), "khoshelham")->sigma(o->depth);
       if (noise) world.AddNoise(o);
     }
     matches.Add(prev, cur);
@@ -80,7 +81,7 @@ Correspondences MatchesInACorridor(int count, double end_share) {
     o.normal = o.depth == end    ? Eigen::Vector3d(0.0, 0.0, -1.0)
                : o.depth == side ? Eigen::Vector3d(1.0, 0.0, 0.0)
                                  : Eigen::Vector3d(0.0, 1.0, 0.0);
-    o.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o.depth);
+    o.sigma_depth = FindNamed(DepthNoiseModels(), "khoshelham")->sigma(o.depth);
     Observation prev = o, cur = o;
     world.AddNoise(&prev);
     world.AddNoise(&cur);
@@ -99,7 +100,8 @@ Correspondences MatchesOnAStrip(int count, double depth, double height) {
     prev.u = world.Uniform(0.0, camera.width - 1.0);
     prev.v = camera.cy + world.Uniform(-0.5, 0.5) * height;
     prev.depth = depth;
-    prev.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(depth);
+    prev.sigma_depth =
+        FindNamed(DepthNoiseModels(), "khoshelham")->sigma(depth);
     cur = prev;
     world.AddNoise(&prev);
     world.AddNoise(&cur);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
@@ -102,7 +103,7 @@ TEST(EstimatorTest, ResidualNormsExplainTheWeights) {
       world.Matches(2000, 0.0, world.Motion(0.1, 0.1)));
   ASSERT_TRUE(estimate.ok()) << estimate.reason;
   ASSERT_EQ(estimate.residual_norms.size(), 2000u);
-  const double width = FindMEstimator("huber")->Width95(3);
+  const double width = FindNamed(MEstimators(), "huber")->Width95(3);
   double sum_of_squares = 0.0;
   for (size_t i = 0; i < estimate.residual_norms.size(); ++i) {
     EXPECT_EQ(estimate.residual_degrees[i], 3);
@@ -188,7 +189,7 @@ TEST(EstimatorTest, EqualFramesAreNotCertain) {
   for (const char* cost : {"bidirectional_point", "point_to_point"}) {
     for (const char* scale : {"fixed", "mad"}) {
       EstimatorOptions options;
-      options.scale = FindScaleEstimator(scale)->estimate;
+      options.scale = FindNamed(ScaleEstimators(), scale)->estimate;
       Estimator estimator(options, MakeRobustCosts(cost, "tukey"));
       const MotionEstimate estimate = estimator.Estimate(equal);
       ASSERT_TRUE(estimate.ok()) << estimate.reason;
@@ -308,7 +309,7 @@ TEST(EstimatorTest, BothCostsCountTheScale) {
     matches.Add(prev, cur);
   }
   EstimatorOptions options;
-  options.scale = FindScaleEstimator("mad")->estimate;
+  options.scale = MadScale;
   Estimator estimator(options, MakeRobustCosts("bidirectional_point", "tukey"));
   const MotionEstimate estimate = estimator.Estimate(matches);
   ASSERT_TRUE(estimate.ok()) << estimate.reason;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/estimation/estimator.h"
+#include "core/util/named_values.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
@@ -23,7 +24,7 @@ Estimator EstimatorOfScale(const std::string& loss, const std::string& scale,
                            RobustSchedule schedule = RobustSchedule::kGnc) {
   EstimatorOptions options;
   options.schedule = schedule;
-  options.scale = FindScaleEstimator(scale)->estimate;
+  options.scale = FindNamed(ScaleEstimators(), scale)->estimate;
   return Estimator(options, MakeRobustCosts(kCost, loss));
 }
 
@@ -244,7 +245,7 @@ TEST(ScaleTest, OfThreeMatchesTheNoiseModelIsTaken) {
   options.max_standard_deviation = 10.0;
   const auto costs = [] { return MakeRobustCosts("point_to_point", "none"); };
   const MotionEstimate fixed = Estimator(options, costs()).Estimate(matches);
-  options.scale = FindScaleEstimator("mad")->estimate;
+  options.scale = MadScale;
   const MotionEstimate scaled = Estimator(options, costs()).Estimate(matches);
   ASSERT_TRUE(fixed.ok()) << fixed.reason;
   EXPECT_EQ(scaled.covariance, fixed.covariance);

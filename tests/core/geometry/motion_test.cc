@@ -31,7 +31,9 @@ TEST(MotionTest, MapsPointsAsTheThesisDoes) {
   const Vector3d prev(0.3, -0.2, 2.0);
   const Vector3d expected =
       RotationFromAngles(x.data()) * (prev - Vector3d(x.tail<3>()));
-  EXPECT_LE((RigidFromMotion(x) * prev - expected).norm(), kMotionRounding);
+  EXPECT_LE(
+      (LinearizationPoint().CurFromPrev(x.data()) * prev - expected).norm(),
+      kMotionRounding);
 }
 
 // C is the centre of the current camera in the previous camera; the motion maps
@@ -39,7 +41,8 @@ TEST(MotionTest, MapsPointsAsTheThesisDoes) {
 TEST(MotionTest, CIsTheCurrentCentreInThePreviousFrame) {
   MotionVector x;
   x << 0.1, 0.2, -0.3, 0.5, -0.6, 0.7;
-  EXPECT_LE((RigidFromMotion(x) * Vector3d(x.tail<3>())).norm(),
+  EXPECT_LE((LinearizationPoint().CurFromPrev(x.data()) * Vector3d(x.tail<3>()))
+                .norm(),
             kMotionRounding);
 }
 
@@ -47,7 +50,8 @@ TEST(MotionTest, VectorAndRigidAreInverse) {
   RandomWorld world(3);
   for (int i = 0; i < 200; ++i) {
     const Rigid3d motion = world.Motion(3.1, 2.0);
-    const Rigid3d back = RigidFromMotion(MotionFromRigid(motion));
+    const Rigid3d back =
+        LinearizationPoint().CurFromPrev(MotionFromRigid(motion).data());
     const Rigid3d difference = back.Inverse() * motion;
     EXPECT_LE(difference.Angle(), 1e-12);
     EXPECT_LE(difference.translation.norm(), 1e-12);
@@ -58,8 +62,9 @@ TEST(MotionTest, GimbalLockGivesTheMotionBack) {
   for (const double beta : {M_PI / 2, -M_PI / 2}) {
     MotionVector x;
     x << 0.4, beta, -0.7, 1.0, 2.0, 3.0;
-    const Rigid3d motion = RigidFromMotion(x);
-    const Rigid3d back = RigidFromMotion(MotionFromRigid(motion));
+    const Rigid3d motion = LinearizationPoint().CurFromPrev(x.data());
+    const Rigid3d back =
+        LinearizationPoint().CurFromPrev(MotionFromRigid(motion).data());
     // Half of the digits are lost: sqrt(eps) for an angle at the pole.
     EXPECT_LE((back.Inverse() * motion).Angle(), 1e-7);
   }

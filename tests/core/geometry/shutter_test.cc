@@ -1,11 +1,10 @@
-#include "core/geometry/shutter.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
 #include "core/geometry/camera.h"
+#include "core/geometry/twist.h"
 
 namespace rgbd_pose {
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/estimation/estimator.h"
+#include "core/util/named_values.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/motion_error.h"
@@ -23,7 +24,7 @@ Estimator MakeDirectTukey() {
 
 // The number of 30 large motions estimated correctly with 40 % outliers.
 int CountRight(const std::string& guess_name) {
-  const InitialGuess* guess = FindInitialGuess(guess_name);
+  const InitialGuess* guess = FindNamed(InitialGuesses(), guess_name);
   Estimator estimator = MakeDirectTukey();
   int right = 0;
   for (int seed = 0; seed < 30; ++seed) {
@@ -55,19 +56,12 @@ TEST(InitialGuessTest, TheSameSolveFailsFromNoMotion) {
       << "the motions of the other test are no challenge";
 }
 
-TEST(InitialGuessTest, FindsAllByName) {
-  EXPECT_EQ(InitialGuesses().size(), 3U);
-  for (const InitialGuess& guess : InitialGuesses()) {
-    EXPECT_EQ(FindInitialGuess(guess.name), &guess);
-  }
-  EXPECT_EQ(FindInitialGuess("velocity"), nullptr);
-}
-
 TEST(InitialGuessTest, OnlyIdentityNeedsNoMatches) {
   const Correspondences none;
-  EXPECT_TRUE(FindInitialGuess("identity")->find(none).has_value());
-  EXPECT_FALSE(FindInitialGuess("ransac")->find(none).has_value());
-  EXPECT_FALSE(FindInitialGuess("clique")->find(none).has_value());
+  EXPECT_EQ(InitialGuesses().size(), 3U);
+  for (const InitialGuess& guess : InitialGuesses()) {
+    EXPECT_EQ(guess.find(none).has_value(), guess.name == "identity");
+  }
 }
 
 }  // namespace

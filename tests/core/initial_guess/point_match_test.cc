@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/initial_guess/consensus.h"
-#include "core/util/chi_squared.h"
+#include "core/util/quantile.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {

@@ -73,7 +73,8 @@ TEST(PoseGraphCovarianceTest, EdgesThatShareFeaturesAreHonestByRedundancy) {
         o.u = pixel.x();
         o.v = pixel.y();
         o.depth = p.z();
-        o.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(p.z());
+        o.sigma_depth =
+            FindNamed(DepthNoiseModels(), "khoshelham")->sigma(p.z());
         world.AddNoise(&o);
         seen[i].push_back(o);
       }

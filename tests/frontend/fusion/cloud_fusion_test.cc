@@ -111,7 +111,7 @@ TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
   for (const bool constant : {false, true}) {
     FusionOptions options = Options(camera);
     options.depth.noise =
-        *FindDepthNoiseModel(constant ? "constant" : "khoshelham");
+        *FindNamed(DepthNoiseModels(), constant ? "constant" : "khoshelham");
     CloudFusion fusion(options);
     fusion.Add(frame, Rigid3d());
     EXPECT_EQ(fusion.cloud().size() > 0, constant);

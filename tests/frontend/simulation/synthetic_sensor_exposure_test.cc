@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "core/geometry/shutter.h"
+#include "core/geometry/twist.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_sensor.h"
 
