@@ -27,12 +27,6 @@ constexpr milliseconds kSlice(50);
 // After this time without an open page, a paused run continues.
 constexpr std::chrono::seconds kAlone(10);
 
-// The position of a match in the distorted image, px.
-cv::Vec2f ImagePoint(const Camera& camera, const Observation& seen) {
-  const Eigen::Vector2d pixel = camera.Project(camera.Ray(seen.u, seen.v));
-  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
-}
-
 }  // namespace
 
 LiveView::LiveView(const std::string& dataset, const Camera& camera,
@@ -117,18 +111,13 @@ void LiveView::AddMap(bool has_moved, ViewNews* news) {
   links_ = links.size();
 }
 
-ViewImages LiveView::Show(const Frame& frame) const {
+ViewImages LiveView::Show(Frame frame) const {
   ViewImages images = {frame.gray, frame.depth, frame.depth_scale, {}};
   if (run_.frames().back().reference == -1) return images;
-  const Correspondences& matches = run_.odometry().last_matches().matches;
-  const std::vector<double>& weights = run_.odometry().last_estimate().weights;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const cv::Vec2f from = ImagePoint(camera_, matches[i].prev);
-    const cv::Vec2f to = ImagePoint(camera_, matches[i].cur);
-    const double weight = weights.size() == matches.size() ? weights[i] : -1.0;
-    images.moves.emplace_back(from[0], from[1], to[0], to[1],
-                              static_cast<float>(weight));
-  }
+  const Odometry& odometry = run_.odometry();
+  frame.twist = odometry.last_twist();
+  images.moves = MatchesInImage(frame, camera_, odometry.last_matches().matches,
+                                odometry.last_estimate().weights);
   return images;
 }
 

@@ -32,7 +32,7 @@ class LiveView {
   ViewFrame Describe(const TrackedFrame& tracked) const;
   void AddKeyframe(const TrackedFrame& tracked, ViewNews* news);
   void AddMap(bool has_moved, ViewNews* news);
-  ViewImages Show(const Frame& frame) const;
+  ViewImages Show(Frame frame) const;
   void KeepPace(const StopSignal& signal);
   void WaitWhilePaused(const StopSignal& signal);
 

@@ -5,6 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "frontend/frame/depth_warper.h"
+#include "frontend/frame/observe.h"
 #include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
@@ -164,6 +166,26 @@ std::string SamplePoints(const Frame& frame, const Camera& camera) {
     bytes += static_cast<char>(frame.gray.at<uint8_t>(pixel));
   }
   return bytes;
+}
+
+std::vector<cv::Vec<float, 5>> MatchesInImage(
+    const Frame& frame, const Camera& camera, const Correspondences& matches,
+    const std::vector<double>& weights) {
+  const auto place = [&](const Observation& seen) {
+    const double depth =
+        seen.depth > 0.0 ? seen.depth : 1.0 / kRoomInverseDepth;
+    return ImagePoint(camera, frame.Timing(),
+                      camera.Ray(seen.u, seen.v) * depth);
+  };
+  std::vector<cv::Vec<float, 5>> moves;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const Eigen::Vector2f from = place(matches[i].prev).cast<float>();
+    const Eigen::Vector2f to = place(matches[i].cur).cast<float>();
+    const double weight = weights.size() == matches.size() ? weights[i] : -1.0;
+    moves.emplace_back(from.x(), from.y(), to.x(), to.y(),
+                       static_cast<float>(weight));
+  }
+  return moves;
 }
 
 }  // namespace rgbd_pose

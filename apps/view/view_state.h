@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/frame.h"
@@ -117,5 +118,12 @@ constexpr size_t kViewPointBytes = 7;
 // Samples visible points of a frame in random order, so the first n points
 // cover the whole view.
 std::string SamplePoints(const Frame& frame, const Camera& camera);
+
+// The matches of a frame with a known velocity, see ViewImages::moves: where
+// its rows were exposed, not where they would be at the time stamp. `weights`:
+// of MotionEstimate.
+std::vector<cv::Vec<float, 5>> MatchesInImage(
+    const Frame& frame, const Camera& camera, const Correspondences& matches,
+    const std::vector<double>& weights);
 
 }  // namespace rgbd_pose

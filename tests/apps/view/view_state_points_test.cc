@@ -36,5 +36,25 @@ TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
   EXPECT_NEAR(left / (points / 8.0), 0.5, 0.15);
 }
 
+// Rows that are exposed late see a turning camera's image moved on.
+TEST(ViewPointsTest, MatchesLieWhereTheirRowsWereExposed) {
+  const Camera camera = {160, 120, 100, 100, 80, 60, 0, 0, 0};
+  Frame frame;
+  frame.color_shutter = {0.0, 0.1};
+  frame.twist = Twist{{0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}};
+  Correspondences matches(camera);
+  ASSERT_TRUE(matches.Add({80, 60, 2.0, 0.5, 0.01}, {80, 60, 2.0, 0.5, 0.01}));
+  ASSERT_TRUE(matches.Add({80, 60, 2.0, 0.5, 0.01}, {80, 110, 2.0, 0.5, 0.01}));
+  const auto moves = MatchesInImage(frame, camera, matches, {0.5, 1.0});
+  ASSERT_EQ(moves.size(), 2U);
+  const double late = frame.color_shutter.RowTime(110.0, camera.height);
+  EXPECT_GT(late, 0.04);
+  EXPECT_NEAR(moves[0][2], 80.0, 0.1);
+  EXPECT_NEAR(moves[1][2], 80.0 - 100.0 * late, 0.5);
+  EXPECT_NEAR(moves[1][3], 110.0, 0.5);
+  EXPECT_EQ(moves[1][4], 1.0F);
+  EXPECT_EQ(MatchesInImage(frame, camera, matches, {})[0][4], -1.0F);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
