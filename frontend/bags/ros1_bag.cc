@@ -77,7 +77,7 @@ class Ros1Bag final : public BagReader {
     if (!Field(header, "encryptor").empty()) {
       throw InputError(path + ": is encrypted; run `rosbag decrypt`");
     }
-    is_unfinished_ = index == 0 || index >= size_;
+    is_unfinished_ = index == 0 || index > size_;
     Guarded([&] { is_unfinished_ ? ReadChunks() : ReadIndex(index); });
     std::stable_sort(
         chunks_.begin(), chunks_.end(),
@@ -146,6 +146,7 @@ class Ros1Bag final : public BagReader {
   // Reads a file without an index: after each chunk follow the times of its
   // messages; connections are in the chunk of their first message.
   void ReadChunks() {
+    ReadBlock();  // the space for the index' place
     while (static_cast<uint64_t>(file_.tellg()) < size_) {
       const auto place = static_cast<uint64_t>(file_.tellg());
       std::string header, data;
