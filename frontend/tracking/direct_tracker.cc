@@ -28,8 +28,9 @@ constexpr double kMinSeenShareOk = 0.3;
 constexpr double kMaxSigmaRotation = 0.005;    // rad
 constexpr double kMaxSigmaTranslation = 0.01;  // m
 
-// With pixels alone it is degraded if its residuals have a larger spread, in
-// sigmas. Measured: right motions have 0.8, with blur 1.9; wrong ones 2 to 5.
+// With pixels alone, not compared with features, it is degraded if its
+// residuals have a larger spread, in sigmas. Measured: right motions have 0.8,
+// with blur 1.9; wrong ones 2 to 5.
 constexpr double kMaxSigmaOk = 2.0;
 
 // Returns the largest standard deviation in any direction of a covariance.
@@ -56,15 +57,6 @@ struct DirectReference final : Reference {
     return samples.SeenFrom(cur_from_ref);
   }
   const FrameView* images() const override { return &view; }
-
-  // How similar the reference and a frame look.
-  ViewLikeness LikenessTo(const PreparedFrame& cur,
-                          const Rigid3d& cur_from_ref) const {
-    const std::vector<cv::Mat>& levels = cur.Derived<SmoothPyramid>().levels;
-    const size_t level =
-        std::min({kLikenessLevel, pyramid.size() - 1, levels.size() - 1});
-    return samples.LikenessTo(cur, pyramid[level], levels[level], cur_from_ref);
-  }
 
   cv::Mat depth;
   std::vector<cv::Mat> pyramid;
@@ -110,15 +102,7 @@ void DirectTracker::Track(const Reference& reference,
              nullptr, &estimators_.refining, estimate);
   }
   if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
-  Judge(reference, frame, tracked);
-  // If features have led the way, the result can be compared with them. Pixels
-  // alone have to fit.
-  const double sigma = estimate->sigma;
-  if (tracked->status == TrackingStatus::kOk && sigma > kMaxSigmaOk) {
-    tracked->status = TrackingStatus::kDegraded;
-    tracked->reason =
-        Format("residuals are %.1f times as large as expected", sigma);
-  }
+  Judge(reference, frame, /*is_alone=*/true, tracked);
 }
 
 void DirectTracker::RefineWithMatches(const Reference& reference,
@@ -129,7 +113,7 @@ void DirectTracker::RefineWithMatches(const Reference& reference,
   tracked->Begin(TrackingSource::kDirect);
   Estimate(reference, frame, by_features.estimate.cur_from_prev, prior,
            &by_features, &estimators_.refining, &tracked->estimate);
-  Judge(reference, frame, tracked);
+  Judge(reference, frame, /*is_alone=*/false, tracked);
 }
 
 void DirectTracker::FindTwist(const Reference& reference,
@@ -189,7 +173,7 @@ void DirectTracker::Estimate(const Reference& reference,
 }
 
 void DirectTracker::Judge(const Reference& reference,
-                          const PreparedFrame& frame,
+                          const PreparedFrame& frame, bool is_alone,
                           TrackingResult* tracked) const {
   const auto& ours = dynamic_cast<const DirectReference&>(reference);
   const MotionEstimate& estimate = tracked->estimate;
@@ -199,7 +183,11 @@ void DirectTracker::Judge(const Reference& reference,
   if (estimate.num_used > 0) {
     share *= static_cast<double>(estimate.num_inliers) / estimate.num_used;
   }
-  const ViewLikeness likeness = ours.LikenessTo(frame, estimate.cur_from_prev);
+  const std::vector<cv::Mat>& levels = frame.Derived<SmoothPyramid>().levels;
+  const size_t level =
+      std::min({kLikenessLevel, ours.pyramid.size() - 1, levels.size() - 1});
+  const ViewLikeness likeness = ours.samples.LikenessTo(
+      frame, ours.pyramid[level], levels[level], estimate.cur_from_prev);
   const std::string few =
       Format("only %.0f %% of the reference agrees", 100.0 * share);
   tracked->status = TrackingStatus::kLost;
@@ -226,6 +214,9 @@ void DirectTracker::Judge(const Reference& reference,
     } else if (translation > kMaxSigmaTranslation) {
       tracked->reason =
           Format("translation is uncertain by %.4f m", translation);
+    } else if (is_alone && estimate.sigma > kMaxSigmaOk) {
+      tracked->reason = Format("residuals are %.1f times as large as expected",
+                               estimate.sigma);
     } else {
       tracked->status = TrackingStatus::kOk;
       tracked->reason.clear();

@@ -115,22 +115,28 @@ void FeatureTracker::Track(const Reference& reference,
                            TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
   tracked->Begin(TrackingSource::kFeatures);
-  Match(ours, frame, cur_from_ref_start, tracked);
   const MotionPrior prior = PriorOf(options_, guess);
-  Estimate(guess.cur_from_ref, prior, tracked);
-  ChooseMotion(prior, tracked);
-  if (guess.velocity != nullptr) {
-    FindTwist(*ours.features, frame, guess, tracked);
-    // With a wrong velocity, few features were where they were searched for.
-    if (tracked->estimate.ok() && ShareOf(ours, *tracked) < kFewFound) {
-      const PreparedFrame moved = frame.WithTwist(tracked->twist);
-      const Rigid3d found = tracked->estimate.cur_from_prev;
-      Match(ours, moved, found, tracked);
-      Estimate(found, prior, tracked);
-      ChooseMotion(prior, tracked);
-      FindTwist(*ours.features, moved, guess, tracked);
+  const auto track = [&](const PreparedFrame& seen, const Rigid3d& search_at,
+                         const Rigid3d& start) {
+    {
+      const StageTimer timer(&tracked->match_ms);
+      frontend_->Match(*ours.features, seen, search_at, &tracked->matches);
+      ours.validation.Split(&tracked->matches, &tracked->on_probation);
     }
+    Estimate(start, prior, tracked);
+    ChooseMotion(prior, tracked);
+    if (guess.velocity != nullptr) {
+      FindTwist(*ours.features, seen, prior, *guess.velocity, tracked);
+    }
+  };
+  track(frame, cur_from_ref_start, guess.cur_from_ref);
+  // With a wrong velocity, few features were where they were searched for.
+  if (guess.velocity != nullptr && tracked->estimate.ok() &&
+      ShareOf(ours, *tracked) < kFewFound) {
+    const Rigid3d found = tracked->estimate.cur_from_prev;
+    track(frame.WithTwist(tracked->twist), found, found);
   }
+  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
   const double agreeing_view = MarkMoving(
@@ -147,17 +153,6 @@ void FeatureTracker::Track(const Reference& reference,
                       MeanInlierFlowPx(tracked->matches, tracked->estimate)};
   tracked->needs_new_keyframe =
       tracked->estimate.num_inliers < options_.min_inliers_ok;
-}
-
-void FeatureTracker::Match(const FeatureReference& reference,
-                           const PreparedFrame& frame,
-                           const Rigid3d& cur_from_ref_start,
-                           TrackingResult* tracked) {
-  const StageTimer timer(&tracked->match_ms);
-  frontend_->Match(*reference.features, frame, cur_from_ref_start,
-                   &tracked->matches);
-  reference.validation.Split(&tracked->matches, &tracked->on_probation);
-  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
 }
 
 void FeatureTracker::ChooseMotion(const MotionPrior& prior,
@@ -195,36 +190,34 @@ void FeatureTracker::ChooseMotion(const MotionPrior& prior,
   std::swap(tracked->matches, other_.matches);
   std::swap(tracked->on_probation, other_.on_probation);
   std::swap(tracked->estimate, other_.estimate);
-  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
 }
 
 void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
-                               const TrackingGuess& guess,
+                               const MotionPrior& prior,
+                               const VelocityPrior& velocity,
                                TrackingResult* tracked) {
   constexpr int kMaxRounds = 3;
   constexpr double kSmallFlowPx = 0.05;
   const MotionEstimate& estimate = tracked->estimate;
-  const Camera& camera = images().camera;
-  const MotionPrior prior = PriorOf(options_, guess);
   Frame seen = frame;
   seen.twist = frame.twist.value_or(Twist());
   // If the velocity is unknown, nothing has been moved yet.
   FrameTiming moved_by = frame.Timing();
   // The covariance if the motion is too doubtful to estimate the velocity.
-  tracked->twist_covariance =
-      MotionCovarianceOfTwist(seen.Timing(), guess.velocity->sigma_angular,
-                              guess.velocity->sigma_linear);
+  tracked->twist_covariance = MotionCovarianceOfTwist(
+      seen.Timing(), velocity.sigma_angular, velocity.sigma_linear);
   for (int round = 0; round < kMaxRounds && estimate.ok(); ++round) {
     const TwistEstimate found = EstimateTwist(
         tracked->matches.matches, estimate.is_inlier, estimate.sigma,
         estimate.cur_from_prev, seen.Timing(),
-        guess.velocity->Mean(estimate.cur_from_prev, moved_by.twist),
-        *guess.velocity);
+        velocity.Mean(estimate.cur_from_prev, moved_by.twist), velocity);
     tracked->twist_covariance =
         found.motion_covariance +
-        MotionCovarianceOfAcceleration(seen.Timing(), *guess.velocity);
+        MotionCovarianceOfAcceleration(seen.Timing(), velocity);
     const Twist change = found.twist - moved_by.twist;
-    if (LargestFlow(camera, seen.Timing(), change) < kSmallFlowPx) break;
+    if (LargestFlow(images().camera, seen.Timing(), change) < kSmallFlowPx) {
+      break;
+    }
     seen.twist = found.twist;
     for (FeatureMatches* part : {&tracked->matches, &tracked->on_probation}) {
       MoveAgain(features, seen, moved_by, images(), part);
@@ -232,7 +225,6 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
     moved_by = seen.Timing();
     Estimate(Rigid3d(estimate.cur_from_prev), prior, tracked);
   }
-  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   tracked->twist = moved_by.twist;
   tracked->estimate.covariance += tracked->twist_covariance;
 }

@@ -56,8 +56,6 @@ class FeatureTracker final : public Tracker {
   }
 
  private:
-  void Match(const FeatureReference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_start, TrackingResult* tracked);
   void Estimate(const Rigid3d& cur_from_ref_start, const MotionPrior& prior,
                 TrackingResult* tracked);
   // Handles many matches that contradict the motion but agree with each other:
@@ -66,7 +64,8 @@ class FeatureTracker final : public Tracker {
   void ChooseMotion(const MotionPrior& prior, TrackingResult* tracked);
   // Finds the velocity, and the motion again from features corrected with it.
   void FindTwist(const FeatureSet& features, const Frame& frame,
-                 const TrackingGuess& guess, TrackingResult* tracked);
+                 const MotionPrior& prior, const VelocityPrior& velocity,
+                 TrackingResult* tracked);
   // Sets status and reason from the estimate.
   void Judge(TrackingResult* tracked) const;
 

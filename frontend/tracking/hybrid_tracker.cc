@@ -93,9 +93,10 @@ void HybridTracker::Track(const Reference& reference,
     tracked->match_ms += start_ms;
   }
   if (!refines_ || ours.direct == nullptr) return;
+  const bool is_clear =
+      tracked->status == TrackingStatus::kOk || tracked->is_ambiguous;
   // Pixels alone take twice as long as features from the next guess.
-  if (guess.is_tentative && ours.features != nullptr &&
-      tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
+  if (guess.is_tentative && ours.features != nullptr && !is_clear) {
     tracked->is_partial = true;
     return;
   }
@@ -111,16 +112,12 @@ void HybridTracker::Track(const Reference& reference,
     return;
   }
   const MotionPrior prior = direct_->Prior(guess);
-  if (tracked->status == TrackingStatus::kOk || tracked->is_ambiguous) {
-    if (guess.leaves_refinement) {
-      tracked->prior_of_refinement = prior;
-    } else {
-      RefineByPixels(ours, frame, prior, tracked);
-    }
+  if (is_clear && guess.leaves_refinement) {
+    tracked->prior_of_refinement = prior;
     return;
   }
-  const bool agree = RefineByPixels(ours, frame, prior, tracked);
-  Confirm(ours, frame, guess, agree, tracked);
+  const bool is_refined = RefineByPixels(ours, frame, prior, tracked);
+  if (!is_clear) Confirm(ours, frame, guess, is_refined, tracked);
 }
 
 void HybridTracker::Refine(const Reference& reference,

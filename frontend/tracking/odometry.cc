@@ -33,6 +33,10 @@ constexpr double kSigmaLinear = 0.3;   // m/s
 constexpr double kSigmaKnownTime = 3e-5;
 constexpr double kSigmaUnknownTime = 5e-3;
 
+// With wrong exposure times of rows, a turn looks like a translation by this
+// much (m per rad): a part of the displacement of objects in a room.
+constexpr double kShiftOfTurn = 0.5;
+
 }  // namespace
 
 std::string OdometryOptions::Check() const {
@@ -142,8 +146,10 @@ MotionMatrix Odometry::TimingCovariance(const Frame& frame,
                                         const Twist& twist) const {
   const bool is_known =
       options_.shutter == ShutterUse::kCamera && frame.HasKnownTimes();
-  return MotionCovarianceOfTiming(
-      twist, is_known ? kSigmaKnownTime : kSigmaUnknownTime);
+  const double sigma = is_known ? kSigmaKnownTime : kSigmaUnknownTime;
+  const double turn = twist.angular.norm();
+  const double shift = twist.linear.norm() + kShiftOfTurn * turn;
+  return IndependentErrors(sigma * turn, sigma * shift);
 }
 
 Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
@@ -160,8 +166,8 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   // If the last frame is to become the reference, the pose since then probably
-  // replaces this one. Until Refine, IsSlow and the velocity that rectifies the
-  // last frame then rely on features alone.
+  // replaces this one. Until it is refined, IsSlow and the velocity that
+  // rectifies the last frame then rely on features alone.
   const bool is_provisional = wants_reference_ && last_.has_value();
   const PreparedFrame* frame =
       Look(measured, prediction, is_provisional, result);
@@ -173,7 +179,10 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
-  Refine(frame, result);
+  if (frame != nullptr && attempts_.kept().prior_of_refinement) {
+    attempts_.Refine(*frame, *reference_, result);
+    shutter_tracking_.Update(attempts_.kept());
+  }
   // A doubtful pose does not end the lost state.
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
@@ -202,10 +211,9 @@ bool Odometry::Follow(const PreparedFrame& measured,
 const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                                     const Prediction* prediction,
                                     bool is_provisional, TrackedFrame* result) {
-  const Rigid3d last = cur_from_ref_;
-  const Rigid3d predicted = cur_from_prev_ * last;
-  const Rigid3d first = options_.predict_velocity ? predicted : last;
-  const Rigid3d second = options_.predict_velocity ? last : predicted;
+  Rigid3d first = cur_from_ref_;
+  Rigid3d second = cur_from_prev_ * cur_from_ref_;
+  if (options_.predict_velocity) std::swap(first, second);
   const auto track = [&](const PreparedFrame& frame,
                          const VelocityPrior* velocity, const Rigid3d* found) {
     const auto from = [&](const Rigid3d& cur_from_ref) {
@@ -242,15 +250,9 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     twist = TwistOf(prediction->cur_from_prev, interval_);
   }
   std::optional<Rigid3d> prev_from_ref;
-  if (!is_lost_) prev_from_ref = last;
+  if (!is_lost_) prev_from_ref = cur_from_ref_;
   return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
                                   reference_, attempts_.kept(), track);
-}
-
-void Odometry::Refine(const PreparedFrame* frame, TrackedFrame* result) {
-  if (frame == nullptr || !attempts_.kept().prior_of_refinement) return;
-  attempts_.Refine(*frame, *reference_, result);
-  shutter_tracking_.Update(attempts_.kept());
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {

@@ -145,12 +145,10 @@ class Odometry {
   bool Follow(const PreparedFrame& frame, const Prediction* prediction,
               TrackedFrame* result);
   // Tracks a frame against reference_. Returns it as tracked, or null if lost.
-  // `is_provisional`: leave the refinement to Refine.
+  // `is_provisional`: leave the refinement to Follow.
   const PreparedFrame* Look(const PreparedFrame& frame,
                             const Prediction* prediction, bool is_provisional,
                             TrackedFrame* result);
-  // Refines a pose if Look has left that. `frame`: returned by Look.
-  void Refine(const PreparedFrame* frame, TrackedFrame* result);
   bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result) const;
   // Whether the camera has moved little since the last frame.
   bool IsSlow() const;

@@ -26,15 +26,12 @@ std::string TrackerOptions::Check() const {
 }
 
 MotionPrior PriorOf(const TrackerOptions& options, const TrackingGuess& guess) {
-  MotionPrior prior;
-  prior.mean = guess.cur_from_ref;
   if (guess.covariance != nullptr) {
-    prior.information = guess.covariance->inverse();
-    return prior;
+    return {guess.cur_from_ref, guess.covariance->inverse()};
   }
-  prior.information = IndependentErrors(1.0 / options.prior_sigma_rotation,
-                                        1.0 / options.prior_sigma_translation);
-  return prior;
+  return {guess.cur_from_ref,
+          IndependentErrors(1.0 / options.prior_sigma_rotation,
+                            1.0 / options.prior_sigma_translation)};
 }
 
 }  // namespace rgbd_pose

@@ -10,42 +10,13 @@
 namespace rgbd_pose {
 namespace {
 
-using Make = std::unique_ptr<Tracker> (*)(TrackerParts parts);
+enum class TrackerKind { kFeatures, kDirect, kHybrid };
 
-std::unique_ptr<FeatureTracker> ByFeatures(TrackerParts* parts) {
-  return std::make_unique<FeatureTracker>(
-      MakeFrontend(parts->frontend, parts->images), std::move(parts->estimator),
-      parts->options);
-}
-
-std::unique_ptr<DirectTracker> ByPixels(TrackerParts* parts) {
-  if (!parts->direct_estimators.has_value()) {
-    throw InputError("a direct tracker needs estimators of direct costs");
-  }
-  return std::make_unique<DirectTracker>(
-      parts->images, *std::move(parts->direct_estimators), parts->options);
-}
-
-std::unique_ptr<Tracker> MakeFeatureTracker(TrackerParts parts) {
-  if (!parts.direct_estimators.has_value()) return ByFeatures(&parts);
-  return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts),
-                                         /*refines=*/false);
-}
-
-std::unique_ptr<Tracker> MakeDirectTracker(TrackerParts parts) {
-  return ByPixels(&parts);
-}
-
-std::unique_ptr<Tracker> MakeHybridTracker(TrackerParts parts) {
-  return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts),
-                                         /*refines=*/true);
-}
-
-// A new tracker needs one header and one row here.
-constexpr Named<Make> kTrackers[] = {
-    {"features", MakeFeatureTracker},
-    {"direct", MakeDirectTracker},
-    {"hybrid", MakeHybridTracker},
+// A new tracker needs a header, a row here and a case in MakeTracker.
+constexpr Named<TrackerKind> kTrackers[] = {
+    {"features", TrackerKind::kFeatures},
+    {"direct", TrackerKind::kDirect},
+    {"hybrid", TrackerKind::kHybrid},
 };
 
 }  // namespace
@@ -54,7 +25,21 @@ std::vector<std::string> TrackerNames() { return NamesOf(kTrackers); }
 
 std::unique_ptr<Tracker> MakeTracker(std::string_view name,
                                      TrackerParts parts) {
-  return RowOf(kTrackers, "tracker", name).value(std::move(parts));
+  const TrackerKind kind = RowOf(kTrackers, "tracker", name).value;
+  std::unique_ptr<DirectTracker> direct;
+  if (parts.direct_estimators.has_value()) {
+    direct = std::make_unique<DirectTracker>(
+        parts.images, *std::move(parts.direct_estimators), parts.options);
+  } else if (kind != TrackerKind::kFeatures) {
+    throw InputError("a direct tracker needs estimators of direct costs");
+  }
+  if (kind == TrackerKind::kDirect) return direct;
+  auto features = std::make_unique<FeatureTracker>(
+      MakeFrontend(parts.frontend, parts.images), std::move(parts.estimator),
+      parts.options);
+  if (direct == nullptr) return features;
+  return std::make_unique<HybridTracker>(std::move(features), std::move(direct),
+                                         kind == TrackerKind::kHybrid);
 }
 
 }  // namespace rgbd_pose

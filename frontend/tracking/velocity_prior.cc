@@ -27,16 +27,12 @@ constexpr double kSigmaOfChange = 0.5;
 // Weight of a new value in the mean squares, which span about ten frames.
 constexpr double kShareOfNew = 0.1;
 
-// With wrong exposure times of rows, a turn looks like a translation by this
-// much (m per rad): a part of the displacement of objects in a room.
-constexpr double kShiftOfTurn = 0.5;
-
 }  // namespace
 
 MotionMatrix IndependentErrors(double turn, double shift) {
   MotionMatrix covariance = MotionMatrix::Zero();
-  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
-      shift * shift, shift * shift;
+  covariance.diagonal().head<3>().setConstant(turn * turn);
+  covariance.diagonal().tail<3>().setConstant(shift * shift);
   return covariance;
 }
 
@@ -69,12 +65,6 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
                       kShareOfReadout * std::abs(color.readout) +
                       std::abs(timing.depth.offset - color.offset);
   return IndependentErrors(sigma_angular * time, sigma_linear * time);
-}
-
-MotionMatrix MotionCovarianceOfTiming(const Twist& twist, double sigma_s) {
-  const double turn = twist.angular.norm();
-  const double shift = twist.linear.norm() + kShiftOfTurn * turn;
-  return IndependentErrors(sigma_s * turn, sigma_s * shift);
 }
 
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,

@@ -44,10 +44,6 @@ MotionMatrix IndependentErrors(double turn, double shift);
 MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
                                      double sigma_angular, double sigma_linear);
 
-// Returns the covariance of the motion to a frame whose capture time is known
-// to within `sigma_s` seconds, for a camera with this velocity.
-MotionMatrix MotionCovarianceOfTiming(const Twist& twist, double sigma_s);
-
 // Returns the covariance that accelerations within a frame add to the motion.
 // Their size follows from the prior's change of velocity between frames.
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
