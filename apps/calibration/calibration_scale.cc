@@ -5,8 +5,8 @@
 
 #include "apps/calibration/calibration_data.h"
 #include "core/evaluation/association.h"
+#include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
-#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/evaluation/trajectory.h"
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
-#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 namespace {

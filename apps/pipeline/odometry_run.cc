@@ -5,7 +5,6 @@
 
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
-#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 

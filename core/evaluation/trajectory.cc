@@ -64,6 +64,25 @@ std::optional<Rigid3d> InterpolatedPose(const Trajectory& trajectory,
                  a.translation + share * (b.translation - a.translation));
 }
 
+std::optional<Rigid3d> MotionAlong(const Trajectory& trajectory,
+                                   double prev_time, double cur_time) {
+  // In a longer gap (s) a hand-held camera may have gone anywhere.
+  constexpr double kMaxGap = 0.21;
+  // Times beyond an end by at most this (s) are rounded stamps.
+  constexpr double kMaxBeyond = 0.02;
+  if (trajectory.empty()) return std::nullopt;
+  const auto pose_at = [&](double time) -> std::optional<Rigid3d> {
+    const double inside = std::clamp(time, trajectory.front().timestamp,
+                                     trajectory.back().timestamp);
+    if (!(std::abs(inside - time) <= kMaxBeyond)) return std::nullopt;
+    return InterpolatedPose(trajectory, inside, kMaxGap);
+  };
+  const std::optional<Rigid3d> prev = pose_at(prev_time);
+  const std::optional<Rigid3d> cur = pose_at(cur_time);
+  if (!prev.has_value() || !cur.has_value()) return std::nullopt;
+  return cur->Inverse() * *prev;
+}
+
 Trajectory ReadTrajectory(const std::string& path,
                           std::vector<std::string>* remarks) {
   Trajectory trajectory;

@@ -23,6 +23,12 @@ using Trajectory = std::vector<StampedPose>;
 std::optional<Rigid3d> InterpolatedPose(const Trajectory& trajectory,
                                         double time, double max_gap = 0.05);
 
+// The motion cur_from_prev between two times (s) along a trajectory of any rate
+// from another source (wheels, an inertial sensor). Nothing in its gaps and
+// beyond its ends.
+std::optional<Rigid3d> MotionAlong(const Trajectory& trajectory,
+                                   double prev_time, double cur_time);
+
 // Reads TUM text with one `timestamp tx ty tz qx qy qz qw` per line (world from
 // camera, metres; see ReadTextTable). Quaternions within 1 % of unit length are
 // normalised. If poses have the same timestamp, the first is kept, and a line

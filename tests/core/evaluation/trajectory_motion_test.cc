@@ -1,4 +1,4 @@
-#include "frontend/tracking/motion_guess.h"
+#include "core/evaluation/trajectory.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ const Trajectory kGuess = {{10.0, Pose(0.0, 0.0)},
                            {10.1, Pose(M_PI / 2, 1.0)},
                            {11.0, Pose(0.0, 5.0)}};
 
-TEST(MotionGuessTest, IsTheMotionFromPreviousToCurrent) {
+TEST(TrajectoryMotionTest, IsTheMotionFromPreviousToCurrent) {
   const auto motion = MotionAlong(kGuess, 10.0, 10.1);
   ASSERT_TRUE(motion.has_value());
   // The current camera's z axis is the world's x axis; hence the previous
@@ -29,14 +29,14 @@ TEST(MotionGuessTest, IsTheMotionFromPreviousToCurrent) {
   EXPECT_NEAR(motion->Angle(), M_PI / 2, 1e-12);
 }
 
-TEST(MotionGuessTest, InterpolatesBetweenPoses) {
+TEST(TrajectoryMotionTest, InterpolatesBetweenPoses) {
   const auto motion = MotionAlong(kGuess, 10.0, 10.05);
   ASSERT_TRUE(motion.has_value());
   EXPECT_NEAR(motion->Angle(), M_PI / 4, 1e-9);
   EXPECT_NEAR(motion->Inverse().translation.x(), 0.5, 1e-9);
 }
 
-TEST(MotionGuessTest, KnowsNothingInGapsAndBeyondTheEnds) {
+TEST(TrajectoryMotionTest, KnowsNothingInGapsAndBeyondTheEnds) {
   EXPECT_FALSE(MotionAlong(kGuess, 10.05, 10.5).has_value());
   EXPECT_FALSE(MotionAlong(kGuess, 9.9, 10.05).has_value());
   EXPECT_FALSE(MotionAlong(kGuess, 11.0, 11.1).has_value());
