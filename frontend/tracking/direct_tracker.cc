@@ -95,11 +95,12 @@ void DirectTracker::Track(const Reference& reference,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
   MotionEstimate* const estimate = &tracked->estimate;
-  Estimate(reference, frame, guess.cur_from_ref, Prior(guess), nullptr,
-           &estimators_.leading, estimate);
+  Estimate(reference, frame, guess.cur_from_ref, PriorOf(options_, guess),
+           nullptr, &estimators_.leading, estimate);
   if (estimate->num_used > 0) {
-    Estimate(reference, frame, Rigid3d(estimate->cur_from_prev), Prior(guess),
-             nullptr, &estimators_.refining, estimate);
+    Estimate(reference, frame, Rigid3d(estimate->cur_from_prev),
+             PriorOf(options_, guess), nullptr, &estimators_.refining,
+             estimate);
   }
   if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
   Judge(reference, frame, /*is_alone=*/true, tracked);
@@ -107,12 +108,12 @@ void DirectTracker::Track(const Reference& reference,
 
 void DirectTracker::RefineWithMatches(const Reference& reference,
                                       const PreparedFrame& frame,
-                                      const MotionPrior& prior,
                                       const TrackingResult& by_features,
                                       TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
-  Estimate(reference, frame, by_features.estimate.cur_from_prev, prior,
-           &by_features, &estimators_.refining, &tracked->estimate);
+  Estimate(reference, frame, by_features.estimate.cur_from_prev,
+           by_features.prior, &by_features, &estimators_.refining,
+           &tracked->estimate);
   Judge(reference, frame, /*is_alone=*/false, tracked);
 }
 
@@ -132,8 +133,9 @@ void DirectTracker::FindTwist(const Reference& reference,
       break;
     }
     seen.twist = twist;
-    Estimate(reference, seen, Rigid3d(estimate->cur_from_prev), Prior(guess),
-             nullptr, &estimators_.refining, estimate);
+    Estimate(reference, seen, Rigid3d(estimate->cur_from_prev),
+             PriorOf(options_, guess), nullptr, &estimators_.refining,
+             estimate);
   }
   tracked->twist = seen.twist;
   tracked->twist_covariance =
@@ -146,8 +148,8 @@ Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
                                  const TrackingGuess& guess) {
   if (!estimators_.coarse.has_value()) return guess.cur_from_ref;
-  Estimate(reference, frame, guess.cur_from_ref, Prior(guess), nullptr,
-           &*estimators_.coarse, &start_);
+  Estimate(reference, frame, guess.cur_from_ref, PriorOf(options_, guess),
+           nullptr, &*estimators_.coarse, &start_);
   return HasMotion(start_) ? start_.cur_from_prev : guess.cur_from_ref;
 }
 

@@ -41,13 +41,8 @@ class DirectTracker final : public Tracker {
   // features contradict the motion. Starts from the motion of the matches,
   // which is accurate enough for the finest level.
   void RefineWithMatches(const Reference& reference, const PreparedFrame& frame,
-                         const MotionPrior& prior,
                          const TrackingResult& by_features,
                          TrackingResult* tracked);
-  // What a guess says about the motion.
-  MotionPrior Prior(const TrackingGuess& guess) const {
-    return PriorOf(options_, guess);
-  }
   // Returns the motion that aligns the coarse images of reference and frame, as
   // a start for tracking; the guess if they do not determine one.
   Rigid3d FindStart(const Reference& reference, const PreparedFrame& frame,

@@ -115,7 +115,7 @@ void FeatureTracker::Track(const Reference& reference,
                            TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
   tracked->Begin(TrackingSource::kFeatures);
-  const MotionPrior prior = PriorOf(options_, guess);
+  tracked->prior = PriorOf(options_, guess);
   const auto track = [&](const PreparedFrame& seen, const Rigid3d& search_at,
                          const Rigid3d& start) {
     {
@@ -123,10 +123,10 @@ void FeatureTracker::Track(const Reference& reference,
       frontend_->Match(*ours.features, seen, search_at, &tracked->matches);
       ours.validation.Split(&tracked->matches, &tracked->on_probation);
     }
-    Estimate(start, prior, tracked);
-    ChooseMotion(prior, tracked);
+    Estimate(start, tracked);
+    ChooseMotion(tracked);
     if (guess.velocity != nullptr) {
-      FindTwist(*ours.features, seen, prior, *guess.velocity, tracked);
+      FindTwist(*ours.features, seen, *guess.velocity, tracked);
     }
   };
   track(frame, cur_from_ref_start, guess.cur_from_ref);
@@ -155,8 +155,7 @@ void FeatureTracker::Track(const Reference& reference,
       tracked->estimate.num_inliers < options_.min_inliers_ok;
 }
 
-void FeatureTracker::ChooseMotion(const MotionPrior& prior,
-                                  TrackingResult* tracked) {
+void FeatureTracker::ChooseMotion(TrackingResult* tracked) {
   tracked->is_ambiguous = false;
   const MotionEstimate& estimate = tracked->estimate;
   const auto is_worth_a_look = [&](int inliers) {
@@ -167,6 +166,7 @@ void FeatureTracker::ChooseMotion(const MotionPrior& prior,
       !is_worth_a_look(estimate.num_used - estimate.num_inliers)) {
     return;
   }
+  other_.prior = tracked->prior;
   other_.matches.Clear();
   other_.on_probation.Clear();
   const FeatureMatches& all = tracked->matches;
@@ -174,7 +174,7 @@ void FeatureTracker::ChooseMotion(const MotionPrior& prior,
     (estimate.is_inlier[i] ? other_.on_probation : other_.matches)
         .AddFrom(all, i);
   }
-  Estimate(Rigid3d(estimate.cur_from_prev), prior, &other_);
+  Estimate(estimate.cur_from_prev, &other_);
   if (!other_.estimate.ok() || !is_worth_a_look(other_.estimate.num_inliers)) {
     return;
   }
@@ -193,7 +193,6 @@ void FeatureTracker::ChooseMotion(const MotionPrior& prior,
 }
 
 void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
-                               const MotionPrior& prior,
                                const VelocityPrior& velocity,
                                TrackingResult* tracked) {
   constexpr int kMaxRounds = 3;
@@ -223,7 +222,7 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
       MoveAgain(features, seen, moved_by, images(), part);
     }
     moved_by = seen.Timing();
-    Estimate(Rigid3d(estimate.cur_from_prev), prior, tracked);
+    Estimate(estimate.cur_from_prev, tracked);
   }
   tracked->twist = moved_by.twist;
   tracked->estimate.covariance += tracked->twist_covariance;
@@ -236,14 +235,13 @@ void FeatureTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
 }
 
 void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_start,
-                              const MotionPrior& prior,
                               TrackingResult* tracked) {
   const Correspondences& matches = tracked->matches.matches;
   Rigid3d start = cur_from_ref_start;
   if (options_.initial_guess != nullptr) {
     start = options_.initial_guess->find(matches).value_or(start);
   }
-  estimator_.Estimate({&matches, &prior}, start, &tracked->estimate);
+  estimator_.Estimate({&matches, &tracked->prior}, start, &tracked->estimate);
 }
 
 void FeatureTracker::Judge(TrackingResult* tracked) const {

@@ -56,16 +56,14 @@ class FeatureTracker final : public Tracker {
   }
 
  private:
-  void Estimate(const Rigid3d& cur_from_ref_start, const MotionPrior& prior,
-                TrackingResult* tracked);
+  void Estimate(const Rigid3d& cur_from_ref_start, TrackingResult* tracked);
   // Handles many matches that contradict the motion but agree with each other:
   // something moves by itself. Takes the motion of the matches that cover more
   // of the image and puts the other matches on probation.
-  void ChooseMotion(const MotionPrior& prior, TrackingResult* tracked);
+  void ChooseMotion(TrackingResult* tracked);
   // Finds the velocity, and the motion again from features corrected with it.
   void FindTwist(const FeatureSet& features, const Frame& frame,
-                 const MotionPrior& prior, const VelocityPrior& velocity,
-                 TrackingResult* tracked);
+                 const VelocityPrior& velocity, TrackingResult* tracked);
   // Sets status and reason from the estimate.
   void Judge(TrackingResult* tracked) const;
 

@@ -111,30 +111,26 @@ void HybridTracker::Track(const Reference& reference,
     }
     return;
   }
-  const MotionPrior prior = direct_->Prior(guess);
-  if (is_clear && guess.leaves_refinement) {
-    tracked->prior_of_refinement = prior;
-    return;
-  }
-  const bool is_refined = RefineByPixels(ours, frame, prior, tracked);
+  tracked->needs_refinement = is_clear && guess.leaves_refinement;
+  if (tracked->needs_refinement) return;
+  const bool is_refined = RefineByPixels(ours, frame, tracked);
   if (!is_clear) Confirm(ours, frame, guess, is_refined, tracked);
 }
 
 void HybridTracker::Refine(const Reference& reference,
                            const PreparedFrame& frame,
                            TrackingResult* tracked) {
-  if (!tracked->prior_of_refinement.has_value()) return;
+  if (!tracked->needs_refinement) return;
   RefineByPixels(dynamic_cast<const HybridReference&>(reference), frame,
-                 *tracked->prior_of_refinement, tracked);
-  tracked->prior_of_refinement.reset();
+                 tracked);
+  tracked->needs_refinement = false;
 }
 
 bool HybridTracker::RefineByPixels(const HybridReference& reference,
                                    const PreparedFrame& frame,
-                                   const MotionPrior& prior,
                                    TrackingResult* tracked) {
   direct_->RefineWithMatches(*reference.direct, WithVelocity(frame, *tracked),
-                             prior, *tracked, &pixels_);
+                             *tracked, &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;

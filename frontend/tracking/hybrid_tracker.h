@@ -38,8 +38,7 @@ class HybridTracker final : public Tracker {
   // contradict it or do not determine one; then only time and iterations
   // change.
   bool RefineByPixels(const HybridReference& reference,
-                      const PreparedFrame& frame, const MotionPrior& prior,
-                      TrackingResult* tracked);
+                      const PreparedFrame& frame, TrackingResult* tracked);
   // Compares a motion from few features with that of pixels alone: ok if they
   // agree. The motion of pixels is taken if they disagree or the other one is
   // not refined. Changes nothing if pixels alone are not ok. `is_refined`:

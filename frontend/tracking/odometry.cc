@@ -179,7 +179,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
-  if (frame != nullptr && attempts_.kept().prior_of_refinement) {
+  if (frame != nullptr && attempts_.kept().needs_refinement) {
     attempts_.Refine(*frame, *reference_, result);
     shutter_tracking_.Update(attempts_.kept());
   }

@@ -90,7 +90,7 @@ struct TrackingGuess {
   bool is_tentative = false;
 
   // The refinement of a pose that needs no confirmation may be left to
-  // Tracker::Refine, as it may not be needed (see prior_of_refinement).
+  // Tracker::Refine, as it may not be needed (see needs_refinement).
   bool leaves_refinement = false;
 };
 
@@ -110,7 +110,7 @@ struct TrackingResult {
     num_found = 0;
     match_ms = 0.0;
     is_ambiguous = false;
-    prior_of_refinement.reset();
+    needs_refinement = false;
     twist.reset();
     twist_covariance.setZero();
     matches.Clear();
@@ -144,8 +144,11 @@ struct TrackingResult {
   // skipped because the guess was tentative.
   bool is_partial = false;
 
-  // Set if Tracker::Refine has still to refine the pose, with this prior.
-  std::optional<MotionPrior> prior_of_refinement;
+  // What the guess says about the motion (feature trackers only).
+  MotionPrior prior;
+
+  // Whether Tracker::Refine has still to refine the pose.
+  bool needs_refinement = false;
 
   // Regions where features contradict the motion (feature trackers only).
   CellMask moving;
@@ -182,7 +185,7 @@ class Tracker {
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
                      const TrackingGuess& guess, TrackingResult* tracked) = 0;
 
-  // Refines a motion if Track has left that (see prior_of_refinement), with the
+  // Refines a motion if Track has left that (see needs_refinement), with the
   // velocity found with it. The status stays as it is.
   virtual void Refine(const Reference& /*reference*/,
                       const PreparedFrame& /*frame*/,

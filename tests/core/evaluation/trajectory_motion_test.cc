@@ -1,29 +1,29 @@
-#include "core/evaluation/trajectory.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/evaluation/trajectory.h"
+
 namespace rgbd_pose {
 namespace {
 
-Rigid3d Pose(double yaw, double x) {
+Rigid3d YawedAt(double yaw, double x) {
   return Rigid3d(
       Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())),
       {x, 0.0, 0.0});
 }
 
 // A quarter turn in 0.1 s while moving 1 m along x; then a gap.
-const Trajectory kGuess = {{10.0, Pose(0.0, 0.0)},
-                           {10.1, Pose(M_PI / 2, 1.0)},
-                           {11.0, Pose(0.0, 5.0)}};
+const Trajectory kGuess = {{10.0, YawedAt(0.0, 0.0)},
+                           {10.1, YawedAt(M_PI / 2, 1.0)},
+                           {11.0, YawedAt(0.0, 5.0)}};
 
 TEST(TrajectoryMotionTest, IsTheMotionFromPreviousToCurrent) {
   const auto motion = MotionAlong(kGuess, 10.0, 10.1);
   ASSERT_TRUE(motion.has_value());
   // The current camera's z axis is the world's x axis; hence the previous
   // camera is 1 m behind it.
-  const Rigid3d expected = Pose(M_PI / 2, 1.0).Inverse();
+  const Rigid3d expected = YawedAt(M_PI / 2, 1.0).Inverse();
   EXPECT_LE((motion->translation - expected.translation).norm(), 1e-12);
   EXPECT_NEAR(motion->translation.z(), -1.0, 1e-12);
   EXPECT_NEAR(motion->Angle(), M_PI / 2, 1e-12);

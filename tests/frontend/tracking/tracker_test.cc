@@ -335,15 +335,15 @@ TEST(HybridTrackerTest, ARefinementThatIsLeftCanBeMadeLater) {
   TrackingGuess guess = Rigid3d();
   tracker->Track(*reference, next, guess, &at_once);
   EXPECT_EQ(at_once.source, TrackingSource::kBoth);
-  EXPECT_FALSE(at_once.prior_of_refinement.has_value());
+  EXPECT_FALSE(at_once.needs_refinement);
   guess.leaves_refinement = true;
   tracker->Track(*reference, next, guess, &later);
   EXPECT_EQ(later.source, TrackingSource::kFeatures);
-  EXPECT_TRUE(later.prior_of_refinement.has_value());
+  EXPECT_TRUE(later.needs_refinement);
   EXPECT_NE(later.estimate.covariance, at_once.estimate.covariance);
   tracker->Refine(*reference, next, &later);
   EXPECT_EQ(later.source, TrackingSource::kBoth);
-  EXPECT_FALSE(later.prior_of_refinement.has_value());
+  EXPECT_FALSE(later.needs_refinement);
   EXPECT_EQ(later.estimate.covariance, at_once.estimate.covariance);
   EXPECT_EQ(later.estimate.iterations, at_once.estimate.iterations);
 }
