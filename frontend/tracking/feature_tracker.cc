@@ -96,8 +96,7 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
   FeatureValidation validation(count);
   if (last != nullptr) {
     validation = FeatureValidation(
-        *dynamic_cast<const FeatureReference&>(*last).features,
-        tracked->matches, tracked->on_probation, tracked->estimate,
+        *dynamic_cast<const FeatureReference&>(*last).features, *tracked,
         frontend_->is_exhaustive(), *features, 2 * options_.min_inliers_ok);
   }
   if (count < static_cast<size_t>(options_.min_inliers)) {
@@ -139,9 +138,8 @@ void FeatureTracker::Track(const Reference& reference,
   tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
-  const double agreeing_view = MarkMoving(
-      *ours.features, tracked->matches, tracked->on_probation,
-      tracked->estimate, frontend_->is_exhaustive(), &tracked->moving);
+  const double agreeing_view =
+      MarkMoving(*ours.features, frontend_->is_exhaustive(), tracked);
   if (tracked->status == TrackingStatus::kOk &&
       agreeing_view < kMinAgreeingViewOk) {
     tracked->is_ambiguous = true;
@@ -178,8 +176,8 @@ void FeatureTracker::ChooseMotion(TrackingResult* tracked) {
   if (!other_.estimate.ok() || !is_worth_a_look(other_.estimate.num_inliers)) {
     return;
   }
-  const int cells = CellsOfInliers(all, estimate);
-  const int other_cells = CellsOfInliers(other_.matches, other_.estimate);
+  const int cells = CellsOfInliers(*tracked);
+  const int other_cells = CellsOfInliers(other_);
   tracked->is_ambiguous = std::min(cells, other_cells) >
                           kMaxRivalCells * std::max(cells, other_cells);
   if (other_cells <= cells) return;

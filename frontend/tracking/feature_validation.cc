@@ -52,29 +52,32 @@ class CellCounts {
 
 }  // namespace
 
-FeatureValidation::FeatureValidation(
-    const FeatureSet& last, const FeatureMatches& found,
-    const FeatureMatches& on_probation, const MotionEstimate& estimate,
-    bool missing_failed, const FeatureSet& fresh, size_t min_trusted)
+FeatureValidation::FeatureValidation(const FeatureSet& last,
+                                     const TrackingResult& tracked,
+                                     bool missing_failed,
+                                     const FeatureSet& fresh,
+                                     size_t min_trusted)
     : agreements_needed_(fresh.observations.size(), 0) {
+  const FeatureMatches& found = tracked.matches;
+  const FeatureMatches& on_probation = tracked.on_probation;
+  const Rigid3d& cur_from_last = tracked.estimate.cur_from_prev;
   const Camera& camera = found.matches.camera();
   std::vector<bool> agrees(last.observations.size(), false);
   std::vector<bool> counts(last.observations.size(), missing_failed);
   for (size_t i = 0; i < found.features.size(); ++i) {
     counts.at(found.features[i]) = true;  // throws if of another reference
-    if (estimate.is_inlier[i]) agrees[found.features[i]] = true;
+    if (tracked.estimate.is_inlier[i]) agrees[found.features[i]] = true;
   }
   // Count these too: with frequent new references they would never be trusted.
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
     counts.at(on_probation.features[i]) = true;
-    agrees.at(on_probation.features[i]) =
-        AgreesWithMotion(on_probation, i, estimate.cur_from_prev);
+    agrees[on_probation.features[i]] =
+        AgreesWithMotion(on_probation, i, cur_from_last);
   }
   CellCounts agreed(camera), failed(camera);
   for (size_t i = 0; i < agrees.size(); ++i) {
     if (!counts[i]) continue;
-    const auto pixel =
-        SeenAt(camera, estimate.cur_from_prev, last.observations[i]);
+    const auto pixel = SeenAt(camera, cur_from_last, last.observations[i]);
     if (pixel.has_value()) ++(agrees[i] ? agreed : failed).At(*pixel);
   }
   for (size_t i = 0; i < agreements_needed_.size(); ++i) {
@@ -113,24 +116,25 @@ void FeatureValidation::Learn(const FeatureMatches& on_probation,
   }
 }
 
-int CellsOfInliers(const FeatureMatches& found,
-                   const MotionEstimate& estimate) {
-  CellCounts counts(found.matches.camera());
-  for (size_t i = 0; i < found.matches.size(); ++i) {
-    const Observation& cur = found.matches[i].cur;
-    if (estimate.is_inlier[i]) ++counts.At({cur.u, cur.v});
+int CellsOfInliers(const TrackingResult& tracked) {
+  const Correspondences& matches = tracked.matches.matches;
+  CellCounts counts(matches.camera());
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const Observation& cur = matches[i].cur;
+    if (tracked.estimate.is_inlier[i]) ++counts.At({cur.u, cur.v});
   }
   return counts.num_covered();
 }
 
-double MarkMoving(const FeatureSet& reference, const FeatureMatches& found,
-                  const FeatureMatches& on_probation,
-                  const MotionEstimate& estimate, bool missing_contradict,
-                  CellMask* moving) {
+double MarkMoving(const FeatureSet& reference, bool missing_contradict,
+                  TrackingResult* tracked) {
   // A feature votes for the cells around it. A feature that is not found may be
   // hidden or only blurred.
   constexpr int kReachCells = 2;
   constexpr int kFound = 3, kMissing = 1, kContradicted = 8;
+  const FeatureMatches& found = tracked->matches;
+  const FeatureMatches& on_probation = tracked->on_probation;
+  const Rigid3d& cur_from_ref = tracked->estimate.cur_from_prev;
   const Camera& camera = found.matches.camera();
   const int columns = (camera.width - 1) / CellMask::kCellPx + 1;
   const int rows = (camera.height - 1) / CellMask::kCellPx + 1;
@@ -158,28 +162,26 @@ double MarkMoving(const FeatureSet& reference, const FeatureMatches& found,
   std::vector<bool> is_found(reference.observations.size(), false);
   for (size_t i = 0; i < found.features.size(); ++i) {
     const Observation& cur = found.matches[i].cur;
-    vote({cur.u, cur.v}, estimate.is_inlier[i] ? kFound : -kFound);
+    vote({cur.u, cur.v}, tracked->estimate.is_inlier[i] ? kFound : -kFound);
     is_found[found.features[i]] = true;
   }
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
     const Observation& cur = on_probation.matches[i].cur;
-    const bool has_agreed =
-        AgreesWithMotion(on_probation, i, estimate.cur_from_prev);
+    const bool has_agreed = AgreesWithMotion(on_probation, i, cur_from_ref);
     vote({cur.u, cur.v}, has_agreed ? kFound : -kFound);
     is_found[on_probation.features[i]] = true;
   }
   for (size_t i = 0; missing_contradict && i < is_found.size(); ++i) {
     if (is_found[i]) continue;
-    const auto pixel =
-        SeenAt(camera, estimate.cur_from_prev, reference.observations[i]);
+    const auto pixel = SeenAt(camera, cur_from_ref, reference.observations[i]);
     if (pixel.has_value() && camera.Contains(*pixel)) {
       vote(*pixel, -kMissing);
     }
   }
-  moving->columns = columns;
-  moving->cells.resize(votes.size());
-  for (size_t i = 0; i < votes.size(); ++i) {
-    moving->cells[i] = votes[i] <= -kContradicted;
+  tracked->moving.columns = columns;
+  tracked->moving.cells.clear();
+  for (const int sum : votes) {
+    tracked->moving.cells.push_back(sum <= -kContradicted);
   }
   const auto count = [](const std::vector<bool>& cells) {
     return std::count(cells.begin(), cells.end(), true);

@@ -4,12 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "core/estimation/correspondences.h"
-#include "core/estimation/frame_view.h"
-#include "core/estimation/motion_estimate.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
+#include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
 
@@ -38,14 +36,12 @@ class FeatureValidation {
       : agreements_needed_(features, 0) {}
 
   // Puts features of a new reference on probation where those of the last one
-  // have failed. `found`, `on_probation` and `estimate` are the result of
-  // tracking the frame of the new reference against the last one.
-  // `missing_failed`: features that were not found count as failed. If fewer
-  // than `min_trusted` features would be trusted, all are.
-  FeatureValidation(const FeatureSet& last, const FeatureMatches& found,
-                    const FeatureMatches& on_probation,
-                    const MotionEstimate& estimate, bool missing_failed,
-                    const FeatureSet& fresh, size_t min_trusted);
+  // have failed. `tracked`: the frame of the new reference against the last
+  // one. `missing_failed`: features that were not found count as failed. If
+  // fewer than `min_trusted` features would be trusted, all are.
+  FeatureValidation(const FeatureSet& last, const TrackingResult& tracked,
+                    bool missing_failed, const FeatureSet& fresh,
+                    size_t min_trusted);
 
   size_t num_trusted() const;
 
@@ -63,14 +59,12 @@ class FeatureValidation {
 
 // Returns the number of image cells (64 px) that contain inliers. The scene
 // covers more cells than a moving object, even if the object has more features.
-int CellsOfInliers(const FeatureMatches& found, const MotionEstimate& estimate);
+int CellsOfInliers(const TrackingResult& tracked);
 
-// Marks where in the current image more features contradict the motion than
+// Marks in tracked->moving where more features contradict the motion than
 // agree; `missing_contradict`: features not found contradict it a little, too.
 // Returns in which share of the regions with features some features agree.
-double MarkMoving(const FeatureSet& reference, const FeatureMatches& found,
-                  const FeatureMatches& on_probation,
-                  const MotionEstimate& estimate, bool missing_contradict,
-                  CellMask* moving);
+double MarkMoving(const FeatureSet& reference, bool missing_contradict,
+                  TrackingResult* tracked);
 
 }  // namespace rgbd_pose

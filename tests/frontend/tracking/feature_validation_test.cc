@@ -17,8 +17,7 @@ Observation At(double u, double v) { return {u, v, kDepth, 0.5, 0.01}; }
 // half do not or are not found.
 class FeatureValidationTest : public testing::Test {
  protected:
-  FeatureValidationTest()
-      : found_{Correspondences(kKinect), {}}, on_probation_(found_) {
+  FeatureValidationTest() {
     for (int v = 40; v < 480; v += 20) {
       for (int u = 40; u < 640; u += 20) {
         const int i = static_cast<int>(last_.observations.size());
@@ -37,8 +36,8 @@ class FeatureValidationTest : public testing::Test {
 
   FeatureValidation Validation(bool missing_failed,
                                size_t min_trusted = 1) const {
-    return FeatureValidation(last_, found_, on_probation_, estimate_,
-                             missing_failed, fresh_, min_trusted);
+    return FeatureValidation(last_, tracked_, missing_failed, fresh_,
+                             min_trusted);
   }
 
   // Splits matches of all fresh features; returns those on probation.
@@ -54,8 +53,10 @@ class FeatureValidationTest : public testing::Test {
   }
 
   FeatureSet last_, fresh_;
-  FeatureMatches found_, on_probation_;
-  MotionEstimate estimate_;
+  TrackingResult tracked_{kKinect};
+  FeatureMatches& found_ = tracked_.matches;
+  FeatureMatches& on_probation_ = tracked_.on_probation;
+  MotionEstimate& estimate_ = tracked_.estimate;
 };
 
 TEST_F(FeatureValidationTest, FeaturesWhereOthersFailedAreOnProbation) {

@@ -11,8 +11,7 @@ const Camera kPinhole = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
 // half do not or are not found.
 class MovingRegionsTest : public testing::Test {
  protected:
-  MovingRegionsTest()
-      : found_{Correspondences(kPinhole), {}}, on_probation_(found_) {
+  MovingRegionsTest() {
     for (int v = 40; v < 480; v += 20) {
       for (int u = 40; u < 640; u += 20) {
         const int i = static_cast<int>(last_.observations.size());
@@ -26,47 +25,43 @@ class MovingRegionsTest : public testing::Test {
   }
 
   FeatureSet last_;
-  FeatureMatches found_, on_probation_;
-  MotionEstimate estimate_;
+  TrackingResult tracked_{kPinhole};
+  FeatureMatches& found_ = tracked_.matches;
+  MotionEstimate& estimate_ = tracked_.estimate;
+  const CellMask& moving_ = tracked_.moving;
 };
 
 TEST_F(MovingRegionsTest, WhereFeaturesContradictTheMotionSomethingMoves) {
-  CellMask moving;
   for (const bool missing_contradict : {true, false}) {
-    const double share = MarkMoving(last_, found_, on_probation_, estimate_,
-                                    missing_contradict, &moving);
-    EXPECT_NEAR(share, 0.55, 0.07);
-    EXPECT_FALSE(moving.Contains(100, 200));
-    EXPECT_TRUE(moving.Contains(500, 200));
+    EXPECT_NEAR(MarkMoving(last_, missing_contradict, &tracked_), 0.55, 0.07);
+    EXPECT_FALSE(moving_.Contains(100, 200));
+    EXPECT_TRUE(moving_.Contains(500, 200));
   }
-  EXPECT_FALSE(moving.Contains(639, 2000)) << "outside";
+  EXPECT_FALSE(moving_.Contains(639, 2000)) << "outside";
 }
 
 TEST_F(MovingRegionsTest, MissingFeaturesAloneAreHiddenBySomething) {
   // Nothing is found in the right half.
-  FeatureMatches found{Correspondences(kPinhole), {}};
+  found_.Clear();
   estimate_.is_inlier.clear();
   for (size_t i = 0; i < last_.observations.size(); ++i) {
     const Observation& o = last_.observations[i];
     if (o.u >= 320) continue;
-    found.Add(last_, i, o);
+    found_.Add(last_, i, o);
     estimate_.is_inlier.push_back(true);
   }
-  CellMask moving;
-  EXPECT_NEAR(MarkMoving(last_, found, on_probation_, estimate_, true, &moving),
-              0.55, 0.07);
-  EXPECT_FALSE(moving.Contains(100, 200));
-  EXPECT_TRUE(moving.Contains(500, 200));
-  EXPECT_EQ(MarkMoving(last_, found, on_probation_, estimate_, false, &moving),
-            1.0);
-  EXPECT_FALSE(moving.Contains(500, 200)) << "a frontend that finds some only";
+  EXPECT_NEAR(MarkMoving(last_, true, &tracked_), 0.55, 0.07);
+  EXPECT_FALSE(moving_.Contains(100, 200));
+  EXPECT_TRUE(moving_.Contains(500, 200));
+  EXPECT_EQ(MarkMoving(last_, false, &tracked_), 1.0);
+  EXPECT_FALSE(moving_.Contains(500, 200)) << "a frontend that finds some only";
 }
 
 TEST_F(MovingRegionsTest, InliersCoverTheirPartOfTheImage) {
-  const int left = CellsOfInliers(found_, estimate_);
+  const int left = CellsOfInliers(tracked_);
   EXPECT_NEAR(left, 5 * 8, 8);
   estimate_.is_inlier.assign(estimate_.is_inlier.size(), true);
-  EXPECT_NEAR(CellsOfInliers(found_, estimate_), 2 * left, 8);
+  EXPECT_NEAR(CellsOfInliers(tracked_), 2 * left, 8);
 }
 
 // A barrel lens draws the image's sides inwards. Regions must be marked at the
@@ -74,16 +69,18 @@ TEST_F(MovingRegionsTest, InliersCoverTheirPartOfTheImage) {
 TEST_F(MovingRegionsTest, AreWhereTheLensSeesThem) {
   Camera barrel = kPinhole;
   barrel.k1 = -0.5;
-  FeatureMatches found{Correspondences(barrel), {}};
+  TrackingResult seen(barrel);
   for (size_t i = 0; i < found_.features.size(); ++i) {
-    found.AddFrom(found_, i);
+    seen.matches.AddFrom(found_, i);
   }
-  CellMask moving;
-  MarkMoving(last_, found, found, estimate_, false, &moving);
-  EXPECT_TRUE(moving.Contains(500, 240));
-  EXPECT_FALSE(moving.Contains(630, 240)) << "beyond what was seen";
-  MarkMoving(last_, found_, found_, estimate_, false, &moving);
-  EXPECT_TRUE(moving.Contains(630, 240)) << "of a pinhole";
+  seen.on_probation = seen.matches;
+  seen.estimate = estimate_;
+  MarkMoving(last_, false, &seen);
+  EXPECT_TRUE(seen.moving.Contains(500, 240));
+  EXPECT_FALSE(seen.moving.Contains(630, 240)) << "beyond what was seen";
+  tracked_.on_probation = found_;
+  MarkMoving(last_, false, &tracked_);
+  EXPECT_TRUE(moving_.Contains(630, 240)) << "of a pinhole";
 }
 
 }  // namespace
