@@ -111,11 +111,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
       frame, {{kSigmaAngular, 0.0, 0.0}, {kSigmaLinear, 0.0, 0.0}});
   {
     const StageTimer timer(&result.track_ms);
-    std::optional<Prediction> predicted;
+    std::optional<Prediction> prediction;
     if (cur_from_prev_guess != nullptr) {
-      predicted = Predict(*cur_from_prev_guess, guess_covariance);
+      prediction = Predict(*cur_from_prev_guess, guess_covariance);
     }
-    const Prediction* prediction = predicted ? &*predicted : nullptr;
     if (reference_ == nullptr) {
       if (TakeReference(frame, WorldFromCam(), &result)) {
         result.status = TrackingStatus::kOk;
@@ -135,9 +134,13 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
-    last_ =
-        LastFrame{frame.WithTwist(twist_),
-                  twist_covariance_ + timing_covariance_, covariance_, result};
+    last_ = {{result.index,
+              segment_,
+              result.world_from_cam,
+              frame.WithTwist(twist_),
+              {},
+              twist_covariance_ + timing_covariance_},
+             covariance_};
   }
   return result;
 }
@@ -164,7 +167,8 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
 }
 
 bool Odometry::Follow(const PreparedFrame& measured,
-                      const Prediction* prediction, TrackedFrame* result) {
+                      const std::optional<Prediction>& prediction,
+                      TrackedFrame* result) {
   // If the last frame is to become the reference, the pose since then probably
   // replaces this one. Until it is refined, IsSlow and the velocity that
   // rectifies the last frame then rely on features alone.
@@ -209,7 +213,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
 // Tracks from the last pose first. A constant velocity is only the second
 // guess: as the first one it can lock onto its own false motion.
 const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
-                                    const Prediction* prediction,
+                                    const std::optional<Prediction>& prediction,
                                     bool is_provisional, TrackedFrame* result) {
   Rigid3d first = cur_from_ref_;
   Rigid3d second = cur_from_prev_ * cur_from_ref_;
@@ -226,7 +230,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
         attempts_.Try(frame, *reference_, from(*found), result)) {
       return true;
     }
-    if (prediction != nullptr) {
+    if (prediction.has_value()) {
       TrackingGuess guess = from(prediction->cur_from_ref);
       if (prediction->is_certain) guess.covariance = &prediction->covariance;
       if (attempts_.Try(frame, *reference_, guess, result)) return true;
@@ -246,7 +250,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     return track(measured, nullptr, nullptr) ? &measured : nullptr;
   }
   std::optional<Twist> twist;
-  if (prediction != nullptr && interval_ > 0.0) {
+  if (prediction.has_value() && interval_ > 0.0) {
     twist = TwistOf(prediction->cur_from_prev, interval_);
   }
   std::optional<Rigid3d> prev_from_ref;
@@ -338,14 +342,12 @@ bool Odometry::InsertKeyframe(const Keyframe& inserted) {
   OdometryKeyframe* keyframe = keyframes_.Find(inserted.id);
   if (keyframe == nullptr) {
     std::string why_not;
-    return AddKeyframe({inserted.id,
-                        segment_,
-                        inserted.world_from_cam,
-                        inserted.Unpacked(),
-                        {},
-                        inserted.timing_covariance,
-                        inserted.features},
-                       nullptr, reference_, &why_not) != nullptr;
+    Keyframe added = inserted;
+    added.segment = segment_;
+    added.frame = inserted.Unpacked();
+    added.images = {};
+    return AddKeyframe(std::move(added), nullptr, reference_, &why_not) !=
+           nullptr;
   }
   if (keyframe == reference_) return true;
   keyframe->world_from_cam = inserted.world_from_cam;

@@ -142,20 +142,21 @@ class Odometry {
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
-  bool Follow(const PreparedFrame& frame, const Prediction* prediction,
+  bool Follow(const PreparedFrame& frame,
+              const std::optional<Prediction>& prediction,
               TrackedFrame* result);
   // Tracks a frame against reference_. Returns it as tracked, or null if lost.
   // `is_provisional`: leave the refinement to Follow.
   const PreparedFrame* Look(const PreparedFrame& frame,
-                            const Prediction* prediction, bool is_provisional,
-                            TrackedFrame* result);
+                            const std::optional<Prediction>& prediction,
+                            bool is_provisional, TrackedFrame* result);
   bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result) const;
   // Whether the camera has moved little since the last frame.
   bool IsSlow() const;
   // Makes the last frame a keyframe and tracks the frame against it. Returns
   // `found`, the result of Look, unless the new result is better.
   const PreparedFrame* LookFromLast(const PreparedFrame& frame,
-                                    const Prediction* prediction,
+                                    const std::optional<Prediction>& prediction,
                                     const PreparedFrame* found,
                                     TrackedFrame* result);
   // Makes the last frame the reference of the next frames. Its velocity is well
@@ -164,7 +165,8 @@ class Odometry {
   // Returns false and changes nothing without a suitable last frame.
   bool MakeLastReference(TrackedFrame* result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
-  void HandleLost(const PreparedFrame& frame, const Prediction* prediction,
+  void HandleLost(const PreparedFrame& frame,
+                  const std::optional<Prediction>& prediction,
                   TrackedFrame* result);
   // Changes nothing if the frame cannot be a reference.
   void StartSegment(const PreparedFrame& frame, const Rigid3d& world_from_cam,
@@ -208,10 +210,8 @@ class Odometry {
   double interval_ = 0.0;                           // since the frame before, s
   // The last frame if it was tracked and is not a reference.
   struct LastFrame {
-    PreparedFrame frame;
-    MotionMatrix timing_covariance;  // see Keyframe
-    MotionMatrix covariance;         // of the motion since its reference
-    TrackedFrame result;
+    Keyframe keyframe;        // as it would become one
+    MotionMatrix covariance;  // of the motion since its reference
   };
   std::optional<LastFrame> last_;
   bool wants_reference_ = false;  // the last frame should become a reference

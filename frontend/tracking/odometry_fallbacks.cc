@@ -36,10 +36,9 @@ bool Odometry::IsSlow() const {
          kSlowFlowPx;
 }
 
-const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
-                                            const Prediction* prediction,
-                                            const PreparedFrame* found,
-                                            TrackedFrame* result) {
+const PreparedFrame* Odometry::LookFromLast(
+    const PreparedFrame& measured, const std::optional<Prediction>& prediction,
+    const PreparedFrame* found, TrackedFrame* result) {
   OdometryKeyframe* const reference = reference_;
   const Rigid3d cur_from_ref = cur_from_ref_;
   const MotionMatrix covariance = covariance_;
@@ -48,10 +47,10 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   attempts_.SwapStashed();
   ShutterTracking::Found before = shutter_tracking_.TakeFound();
   std::optional<Prediction> since;
-  if (prediction != nullptr)
+  if (prediction.has_value()) {
     since = Predict(prediction->cur_from_prev, nullptr);
-  const PreparedFrame* const frame =
-      Look(measured, since ? &*since : nullptr, false, &from_last);
+  }
+  const PreparedFrame* const frame = Look(measured, since, false, &from_last);
   result->iterations = from_last.iterations;
   result->match_ms = from_last.match_ms;
   result->solve_ms = from_last.solve_ms;
@@ -92,19 +91,15 @@ bool Odometry::GoOnFromLast(TrackedFrame* result) {
 bool Odometry::MakeLastReference(TrackedFrame* result) {
   if (!last_.has_value()) return false;
   const StageTimer timer(&result->reference_ms);
-  const PreparedFrame& frame = last_->frame;
-  const PreparedFrame seen = shutter_tracking_.LastAtOneMoment(frame);
+  const PreparedFrame& frame = last_->keyframe.frame;
+  Keyframe keyframe = last_->keyframe;
+  keyframe.frame = shutter_tracking_.LastAtOneMoment(frame);
   std::string why_not;
-  OdometryKeyframe* const added = AddKeyframe({last_->result.index,
-                                               segment_,
-                                               last_->result.world_from_cam,
-                                               seen,
-                                               {},
-                                               last_->timing_covariance},
-                                              nullptr, reference_, &why_not);
+  OdometryKeyframe* const added =
+      AddKeyframe(keyframe, nullptr, reference_, &why_not);
   if (added == nullptr) return false;
   reference_ = added;
-  shutter_tracking_.AddReference(frame, seen);
+  shutter_tracking_.AddReference(frame, keyframe.frame);
   result->previous_is_reference = true;
   last_.reset();
   cur_from_ref_ = Rigid3d();
@@ -149,9 +144,10 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
 }
 
 void Odometry::HandleLost(const PreparedFrame& frame,
-                          const Prediction* prediction, TrackedFrame* result) {
+                          const std::optional<Prediction>& prediction,
+                          TrackedFrame* result) {
   // After one lost frame without a guess, the motion since the loss is unknown.
-  is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
+  is_predicted_ = prediction.has_value() && (is_predicted_ || !is_lost_);
   // A new segment is best placed where the camera was heading.
   const Rigid3d moved_on =
       (is_lost_ ? Rigid3d() : cur_from_prev_) * cur_from_ref_;
@@ -160,7 +156,7 @@ void Odometry::HandleLost(const PreparedFrame& frame,
   shutter_tracking_.HandleLost();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
-  if (prediction != nullptr) {
+  if (prediction.has_value()) {
     cur_from_prev_ = prediction->cur_from_prev;
     cur_from_ref_ = prediction->cur_from_ref;
     covariance_ = prediction->covariance;
@@ -174,7 +170,7 @@ void Odometry::HandleLost(const PreparedFrame& frame,
         {reference_->id, result->index, cur_from_ref_, covariance_}};
   }
   if (options_.on_lost != LostPolicy::kNewSegment) return;
-  const Rigid3d& start = prediction != nullptr ? cur_from_ref_ : moved_on;
+  const Rigid3d& start = prediction.has_value() ? cur_from_ref_ : moved_on;
   StartSegment(frame, reference_->world_from_cam * start.Inverse(), result);
 }
 

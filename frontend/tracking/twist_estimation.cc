@@ -18,23 +18,6 @@ constexpr double kLossWidth = 2.0;
 // the cosine between viewing ray and normal, which points to the camera).
 constexpr double kFlattest = -0.2;
 
-// Normal equations of the change of the motion (rotation, then translation, in
-// current axes) and the change of the velocity (angular, then linear).
-struct Equations {
-  Matrix12 hessian = Matrix12::Zero();
-  Vector12 right = Vector12::Zero();
-
-  // Adds a residual with its derivatives by both changes.
-  void Add(const Row6& by_motion, const Row6& by_velocity, double residual,
-           double weight) {
-    Eigen::Matrix<double, 1, 12> both;
-    both << by_motion, by_velocity;
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(both.transpose(),
-                                                       weight);
-    right -= weight * residual * both.transpose();
-  }
-};
-
 double Weight(double square, double sigma) {
   return 1.0 / (sigma * sigma *
                 (1.0 + square / (sigma * sigma * kLossWidth * kLossWidth)));
@@ -50,7 +33,18 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   // Errors not covered by the noise model are no smaller here.
   const double spread = std::max(1.0, sigma);
   const Camera& camera = matches.camera();
-  Equations equations;
+  // Normal equations of the change of the motion (rotation, then translation,
+  // in current axes) and the change of the velocity (angular, then linear).
+  Matrix12 hessian = Matrix12::Zero();
+  Vector12 right = Vector12::Zero();
+  // Adds a residual with its derivatives by both changes.
+  const auto add = [&](const Row6& by_motion, const Row6& by_velocity,
+                       double residual, double weight) {
+    Vector12 both;
+    both << by_motion.transpose(), by_velocity.transpose();
+    hessian.selfadjointView<Eigen::Lower>().rankUpdate(both, weight);
+    right -= weight * residual * both;
+  };
   for (size_t i = 0; i < matches.size(); ++i) {
     const auto& [ref, cur] = matches[i];
     if (!is_inlier[i] || ref.depth <= 0.0) continue;
@@ -72,8 +66,8 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     // For a point seen `seen` seconds after the stamp, a change of the velocity
     // acts like a motion in the opposite direction for this time.
     const double seen = timing.color.RowTime(row, camera.height);
-    equations.Add(camera.fx * by_x, -seen * camera.fx * by_x, u, weight);
-    equations.Add(camera.fy * by_y, -seen * camera.fy * by_y, v, weight);
+    add(camera.fx * by_x, -seen * camera.fx * by_x, u, weight);
+    add(camera.fy * by_y, -seen * camera.fy * by_y, v, weight);
     if (cur.depth <= 0.0) continue;
     // Between the colour and the depth exposure the surface moves along the
     // viewing ray; how far depends on its slope.
@@ -86,28 +80,27 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
           cur.normal.transpose() / slope;
     }
     const double z = point.z() - cur.depth;
-    equations.Add(
-        by_z, -seen * by_z - since * along_ray, z,
+    add(by_z, -seen * by_z - since * along_ray, z,
         Weight(z * z, spread * std::hypot(ref.sigma_depth, cur.sigma_depth)));
   }
-  equations.hessian = equations.hessian.selfadjointView<Eigen::Lower>();
+  hessian = hessian.selfadjointView<Eigen::Lower>();
   // The motion has no prior; this only keeps the system solvable.
-  equations.hessian.diagonal().head<6>().array() += 1e-3;
+  hessian.diagonal().head<6>().array() += 1e-3;
   const Twist off = prior_mean - timing.twist;
   const double angular = 1.0 / (prior.sigma_angular * prior.sigma_angular);
   const double linear = 1.0 / (prior.sigma_linear * prior.sigma_linear);
-  equations.hessian.diagonal().segment<3>(6).array() += angular;
-  equations.hessian.diagonal().tail<3>().array() += linear;
-  equations.right.segment<3>(6) += angular * off.angular;
-  equations.right.tail<3>() += linear * off.linear;
-  const Vector12 change = equations.hessian.ldlt().solve(equations.right);
+  hessian.diagonal().segment<3>(6).array() += angular;
+  hessian.diagonal().tail<3>().array() += linear;
+  right.segment<3>(6) += angular * off.angular;
+  right.tail<3>() += linear * off.linear;
+  const Vector12 change = hessian.ldlt().solve(right);
   const Twist change_of_twist = {change.segment<3>(6), change.segment<3>(9)};
   // A change of the velocity changes the motion by -H_mm^-1 H_mv.
-  const MotionMatrix H_mm = equations.hessian.topLeftCorner<6, 6>();
-  const MotionMatrix H_mv = equations.hessian.topRightCorner<6, 6>();
+  const MotionMatrix H_mm = hessian.topLeftCorner<6, 6>();
+  const MotionMatrix H_mv = hessian.topRightCorner<6, 6>();
   const MotionMatrix follows = H_mm.ldlt().solve(H_mv);
   const MotionMatrix velocity_information =
-      equations.hessian.bottomRightCorner<6, 6>() - H_mv.transpose() * follows;
+      hessian.bottomRightCorner<6, 6>() - H_mv.transpose() * follows;
   MotionMatrix to_center = MotionMatrix::Identity();
   to_center.bottomRightCorner<3, 3>() =
       -cur_from_ref.rotation.conjugate().toRotationMatrix();
