@@ -20,9 +20,9 @@ constexpr double kMinRival = 0.25;
 // It is unknown which of two motions is the motion of the scene if the ratio of
 // the image areas of their inliers (smaller to larger) exceeds this.
 constexpr double kMaxRivalCells = 0.7;
-// Features that agree in a smaller share of the view are likely to lie on a
-// moving object. Measured: with such an object on 40 % of the view mostly 0.5
-// to 0.6, on 10 % 0.8; 95 % of real frames have more than 0.64.
+// Features that agree in a smaller share of the view may lie on a moving
+// object. One on 40 % of the view leaves 0.5 to 0.6; 95 % of real frames have
+// more than 0.64.
 constexpr double kMinAgreeingViewOk = 0.45;
 
 // Corrects image points by the frame's velocity instead of by `moved_by`.

@@ -48,11 +48,6 @@ HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
       pixels_(features_->images().camera),
       alone_(pixels_) {}
 
-void HybridTracker::Prepare(const PreparedFrame& frame) const {
-  features_->Prepare(frame);
-  direct_->Prepare(frame);
-}
-
 std::unique_ptr<Reference> HybridTracker::MakeReference(
     const PreparedFrame& frame, const Reference* last,
     const TrackingResult* tracked, std::string* why_not) {

@@ -19,7 +19,10 @@ class HybridTracker final : public Tracker {
   HybridTracker(std::unique_ptr<FeatureTracker> features,
                 std::unique_ptr<DirectTracker> direct, bool refines);
 
-  void Prepare(const PreparedFrame& frame) const override;
+  void Prepare(const PreparedFrame& frame) const override {
+    features_->Prepare(frame);
+    direct_->Prepare(frame);
+  }
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
                                            const Reference* last,
                                            const TrackingResult* tracked,

@@ -26,10 +26,8 @@ constexpr double kSigmaAngular = 0.5;  // rad/s
 constexpr double kSigmaLinear = 0.3;   // m/s
 
 // Uncertainty of the capture time of a pixel, s. Known shutters: the effect of
-// blur and stamps. Others: the effect of a Kinect's shutter. Measured on two
-// real sequences without their shutter and two simulated ones: NEES is 0.6 to
-// 1.5 (1.6 to 6.6 without this); at most about 1 % of the frames with status ok
-// are wrong by more than five sigmas (up to 27 % without this).
+// blur and stamps. Others: the effect of a Kinect's shutter. Without this, up
+// to 27 % of the ok frames are wrong by more than five sigmas, with it 1 %.
 constexpr double kSigmaKnownTime = 3e-5;
 constexpr double kSigmaUnknownTime = 5e-3;
 
@@ -134,13 +132,13 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
-    last_ = {{result.index,
-              segment_,
-              result.world_from_cam,
-              frame.WithTwist(twist_),
-              {},
-              twist_covariance_ + timing_covariance_},
-             covariance_};
+    last_ = {result.index,
+             segment_,
+             result.world_from_cam,
+             frame.WithTwist(twist_),
+             {},
+             twist_covariance_ + timing_covariance_};
+    last_covariance_ = covariance_;
   }
   return result;
 }

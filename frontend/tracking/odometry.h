@@ -196,24 +196,20 @@ class Odometry {
   Relocaliser relocaliser_;
   TrackingAttempts attempts_;  // at the last frame
   ShutterTracking shutter_tracking_;
-  bool has_shutter_ = false;                              // of the last frame
-  std::optional<Twist> twist_;                            // see last_twist
-  MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see TrackingResult
-  MotionMatrix timing_covariance_ =
-      MotionMatrix::Zero();                // due to its capture time
-  OdometryKeyframe* reference_ = nullptr;  // null: none yet
+  bool has_shutter_ = false;                               // of the last frame
+  std::optional<Twist> twist_;                             // see last_twist
+  MotionMatrix twist_covariance_ = MotionMatrix::Zero();   // see TrackingResult
+  MotionMatrix timing_covariance_ = MotionMatrix::Zero();  // of capture time
+  OdometryKeyframe* reference_ = nullptr;                  // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
   MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
   Rigid3d cur_from_prev_;                           // between the last two
   double timestamp_ = 0.0;                          // of the last frame, s
   double interval_ = 0.0;                           // since the frame before, s
-  // The last frame if it was tracked and is not a reference.
-  struct LastFrame {
-    Keyframe keyframe;        // as it would become one
-    MotionMatrix covariance;  // of the motion since its reference
-  };
-  std::optional<LastFrame> last_;
+  // The last frame, to become a keyframe, if it was tracked and is none.
+  std::optional<Keyframe> last_;
+  MotionMatrix last_covariance_ = MotionMatrix::Zero();  // since its reference
   bool wants_reference_ = false;  // the last frame should become a reference
   int segment_ = 0;
   int latest_segment_ = 0;

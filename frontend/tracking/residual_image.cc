@@ -15,42 +15,34 @@ constexpr double kFullColor = 20.0;  // grey levels
 // colours stand out.
 constexpr double kDimmed = 0.5;
 
-// Returns where the frame sees each pixel of level 1 of the reference: px of
-// level 1 of the frame, or (-1, -1) if it does not see it.
-cv::Mat FindPlaces(const FrameView& reference, const Rigid3d& cur_from_ref) {
-  const FrameView::Level& level = reference.levels[1];
-  cv::Mat places(level.gray.height, level.gray.width, CV_32FC2,
-                 cv::Scalar(-1.0, -1.0));
+}  // namespace
+
+cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
+                      const Rigid3d& cur_from_ref) {
+  const auto& [gray, camera] = reference.levels[1];
+  // Where the frame sees each pixel of level 1 of the reference: px of level 1
+  // of the frame.
+  cv::Mat places(gray.height, gray.width, CV_32FC2, cv::Scalar::all(-1.0));
+  cv::Mat valid(places.size(), CV_8UC1, cv::Scalar(0));
   for (int v = 0; v < places.rows; ++v) {
     for (int u = 0; u < places.cols; ++u) {
       const double depth = reference.DepthAt(2 * u + 1, 2 * v + 1);
       if (depth <= 0.0) continue;
       const Eigen::Vector3d point =
-          cur_from_ref * level.camera.Unproject(Eigen::Vector2d(u, v), depth);
+          cur_from_ref * camera.Unproject(Eigen::Vector2d(u, v), depth);
       if (!(point.z() > 0.0)) continue;
-      const Eigen::Vector2d pixel = level.camera.Project(point);
-      if (!level.camera.Contains(pixel)) continue;
+      const Eigen::Vector2d pixel = camera.Project(point);
+      if (!camera.Contains(pixel)) continue;
       places.at<cv::Vec2f>(v, u) = {static_cast<float>(pixel.x()),
                                     static_cast<float>(pixel.y())};
+      valid.at<uint8_t>(v, u) = 255;
     }
   }
-  return places;
-}
-
-}  // namespace
-
-cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
-                      const Rigid3d& cur_from_ref) {
-  const ImageView<uint8_t>& gray = reference.levels[1].gray;
   const SmoothPyramid pyramid{PreparedFrame(frame)};
-  const cv::Mat places = FindPlaces(reference, cur_from_ref);
   cv::Mat seen;
   cv::remap(pyramid.levels[1], seen, places, cv::Mat(), cv::INTER_LINEAR);
   const cv::Mat before(gray.height, gray.width, CV_8UC1,
                        const_cast<uint8_t*>(gray.data), gray.stride);
-  cv::Mat column, valid;
-  cv::extractChannel(places, column, 0);
-  cv::compare(column, 0.0, valid, cv::CMP_GE);
   cv::Scalar mean_before, deviation_before, mean_now, deviation_now;
   cv::meanStdDev(before, mean_before, deviation_before, valid);
   cv::meanStdDev(seen, mean_now, deviation_now, valid);

@@ -37,9 +37,8 @@ struct TrackerOptions {
 
   // With pixels, a frame is lost if a smaller share of its reference is seen as
   // predicted, or if neither grey levels nor depths agree with the reference by
-  // this much, for example if something covers the lens. Measured: right
-  // motions have 0.4 (half of the image covered) to 0.99 in one of the two,
-  // wrong ones -0.4 to 0.1 in both.
+  // this much. Right motions have at least 0.4 (half of the image covered) in
+  // one of the two, wrong ones at most 0.1 in both.
   double min_seen_share = 0.15;
   double min_likeness = 0.25;
 
