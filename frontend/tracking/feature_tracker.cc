@@ -166,7 +166,7 @@ void FeatureTracker::ChooseMotion(TrackingResult* tracked) {
   }
   other_.prior = tracked->prior;
   other_.matches.Clear();
-  other_.on_probation.Clear();
+  other_.on_probation = tracked->on_probation;
   const FeatureMatches& all = tracked->matches;
   for (size_t i = 0; i < all.features.size(); ++i) {
     (estimate.is_inlier[i] ? other_.on_probation : other_.matches)
@@ -181,10 +181,6 @@ void FeatureTracker::ChooseMotion(TrackingResult* tracked) {
   tracked->is_ambiguous = std::min(cells, other_cells) >
                           kMaxRivalCells * std::max(cells, other_cells);
   if (other_cells <= cells) return;
-  const FeatureMatches& on_probation = tracked->on_probation;
-  for (size_t i = 0; i < on_probation.features.size(); ++i) {
-    other_.on_probation.AddFrom(on_probation, i);
-  }
   std::swap(tracked->matches, other_.matches);
   std::swap(tracked->on_probation, other_.on_probation);
   std::swap(tracked->estimate, other_.estimate);
@@ -232,10 +228,8 @@ void FeatureTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
   tracked->overlap.share = ShareOf(ours, *tracked);
 }
 
-void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_start,
-                              TrackingResult* tracked) {
+void FeatureTracker::Estimate(Rigid3d start, TrackingResult* tracked) {
   const Correspondences& matches = tracked->matches.matches;
-  Rigid3d start = cur_from_ref_start;
   if (options_.initial_guess != nullptr) {
     start = options_.initial_guess->find(matches).value_or(start);
   }

@@ -56,7 +56,7 @@ class FeatureTracker final : public Tracker {
   }
 
  private:
-  void Estimate(const Rigid3d& cur_from_ref_start, TrackingResult* tracked);
+  void Estimate(Rigid3d start, TrackingResult* tracked);
   // Handles many matches that contradict the motion but agree with each other:
   // something moves by itself. Takes the motion of the matches that cover more
   // of the image and puts the other matches on probation.

@@ -72,7 +72,6 @@ const PreparedFrame* Odometry::LookFromLast(
 }
 
 bool Odometry::GoOnFromLast(TrackedFrame* result) {
-  if (!last_.has_value()) return false;
   Reference* const reference = reference_->reference.get();
   const MotionMatrix covariance = last_covariance_ + covariance_;
   if (!MakeLastReference(result)) return false;
