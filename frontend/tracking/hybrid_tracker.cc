@@ -25,10 +25,8 @@ PreparedFrame WithVelocity(const PreparedFrame& frame,
   return tracked.twist.has_value() ? frame.WithTwist(tracked.twist) : frame;
 }
 
-}  // namespace
-
 // One of the two may be null.
-struct HybridTracker::HybridReference final : Reference {
+struct HybridReference final : Reference {
   std::unique_ptr<Reference> features, direct;
 
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
@@ -38,6 +36,8 @@ struct HybridTracker::HybridReference final : Reference {
     return direct != nullptr ? direct->images() : nullptr;
   }
 };
+
+}  // namespace
 
 HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
                              std::unique_ptr<DirectTracker> direct,
@@ -108,24 +108,24 @@ void HybridTracker::Track(const Reference& reference,
   }
   tracked->needs_refinement = is_clear && guess.leaves_refinement;
   if (tracked->needs_refinement) return;
-  const bool is_refined = RefineByPixels(ours, frame, tracked);
-  if (!is_clear) Confirm(ours, frame, guess, is_refined, tracked);
+  const bool is_refined = RefineByPixels(*ours.direct, frame, tracked);
+  if (!is_clear) Confirm(*ours.direct, frame, guess, is_refined, tracked);
 }
 
 void HybridTracker::Refine(const Reference& reference,
                            const PreparedFrame& frame,
                            TrackingResult* tracked) {
   if (!tracked->needs_refinement) return;
-  RefineByPixels(dynamic_cast<const HybridReference&>(reference), frame,
+  RefineByPixels(*dynamic_cast<const HybridReference&>(reference).direct, frame,
                  tracked);
   tracked->needs_refinement = false;
 }
 
-bool HybridTracker::RefineByPixels(const HybridReference& reference,
+bool HybridTracker::RefineByPixels(const Reference& direct,
                                    const PreparedFrame& frame,
                                    TrackingResult* tracked) {
-  direct_->RefineWithMatches(*reference.direct, WithVelocity(frame, *tracked),
-                             *tracked, &pixels_);
+  direct_->RefineWithMatches(direct, WithVelocity(frame, *tracked), *tracked,
+                             &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
@@ -144,12 +144,10 @@ bool HybridTracker::RefineByPixels(const HybridReference& reference,
   return true;
 }
 
-void HybridTracker::Confirm(const HybridReference& reference,
-                            const PreparedFrame& frame,
+void HybridTracker::Confirm(const Reference& direct, const PreparedFrame& frame,
                             const TrackingGuess& guess, bool is_refined,
                             TrackingResult* tracked) {
-  direct_->Track(*reference.direct, WithVelocity(frame, *tracked), guess,
-                 &alone_);
+  direct_->Track(direct, WithVelocity(frame, *tracked), guess, &alone_);
   if (alone_.status != TrackingStatus::kOk) return;
   if (Agree(tracked->estimate, alone_.estimate)) {
     tracked->status = TrackingStatus::kOk;

@@ -35,18 +35,16 @@ class HybridTracker final : public Tracker {
   const FrontendOptions& images() const override { return features_->images(); }
 
  private:
-  struct HybridReference;
-
   // Refines the motion of the features by pixels. Returns false if pixels
   // contradict it or do not determine one; then only time and iterations
   // change.
-  bool RefineByPixels(const HybridReference& reference,
-                      const PreparedFrame& frame, TrackingResult* tracked);
+  bool RefineByPixels(const Reference& direct, const PreparedFrame& frame,
+                      TrackingResult* tracked);
   // Compares a motion from few features with that of pixels alone: ok if they
   // agree. The motion of pixels is taken if they disagree or the other one is
   // not refined. Changes nothing if pixels alone are not ok. `is_refined`:
   // result of RefineByPixels.
-  void Confirm(const HybridReference& reference, const PreparedFrame& frame,
+  void Confirm(const Reference& direct, const PreparedFrame& frame,
                const TrackingGuess& guess, bool is_refined,
                TrackingResult* tracked);
 

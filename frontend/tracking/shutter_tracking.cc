@@ -117,9 +117,8 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
   const Twist twist =
       VelocityBetween(early_->before, early_->interval, since, interval);
   Frame& frame = early_->frame;
-  const FrameTiming timing = frame.Timing(twist);
   velocity_.Correct(twist, frame.timestamp);
-  if (LargestFlow(tracker_->images().camera, timing,
+  if (LargestFlow(tracker_->images().camera, frame.Timing(twist),
                   twist - frame.twist.value_or(Twist())) <
       (early_->is_late ? kSmallFlowPxOfLate : kSmallFlowPx)) {
     return false;
