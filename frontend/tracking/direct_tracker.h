@@ -38,8 +38,7 @@ class DirectTracker final : public Tracker {
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
   // Estimates the motion from matches and pixels together, without pixels where
-  // features contradict the motion. Starts from the motion of the matches,
-  // which is accurate enough for the finest level.
+  // features contradict the motion, from the motion and prior of the matches.
   void RefineWithMatches(const Reference& reference, const PreparedFrame& frame,
                          const TrackingResult& by_features,
                          TrackingResult* tracked);

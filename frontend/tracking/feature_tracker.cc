@@ -45,13 +45,12 @@ double ShareOf(const FeatureReference& reference,
          reference.validation.num_trusted();
 }
 
-double MeanInlierFlowPx(const FeatureMatches& found,
-                        const MotionEstimate& estimate) {
+double MeanInlierFlowPx(const TrackingResult& tracked) {
   double sum = 0.0;
   int count = 0;
-  for (size_t i = 0; i < found.matches.size(); ++i) {
-    if (!estimate.is_inlier[i]) continue;
-    const auto& [prev, cur] = found.matches[i];
+  for (size_t i = 0; i < tracked.matches.matches.size(); ++i) {
+    if (!tracked.estimate.is_inlier[i]) continue;
+    const auto& [prev, cur] = tracked.matches.matches[i];
     sum += std::hypot(cur.u - prev.u, cur.v - prev.v);
     ++count;
   }
@@ -147,8 +146,7 @@ void FeatureTracker::Track(const Reference& reference,
     tracked->reason = Format("features agree in only %.0f %% of the view",
                              100.0 * agreeing_view);
   }
-  tracked->overlap = {ShareOf(ours, *tracked),
-                      MeanInlierFlowPx(tracked->matches, tracked->estimate)};
+  tracked->overlap = {ShareOf(ours, *tracked), MeanInlierFlowPx(*tracked)};
   tracked->needs_new_keyframe =
       tracked->estimate.num_inliers < options_.min_inliers_ok;
 }

@@ -39,15 +39,13 @@ struct OdometryOptions {
   double min_reference_share = 0.5;
   double max_flow_px = 60.0;
 
-  // Tracking starts from the last pose; if true, from the last pose moved on at
-  // constant velocity.
+  // Whether tracking starts from the last pose moved on at constant velocity.
   bool predict_velocity = false;
 
   // What to do with frames whose motion is not found.
   LostPolicy on_lost = LostPolicy::kNewSegment;
 
-  // Whether to compensate that rows are exposed one after another and that
-  // depth is exposed at another time than colour.
+  // How the exposure times of rows and of depth are used.
   ShutterUse shutter = ShutterUse::kCamera;
 
   // How long (s) the previous segment is searched for after a new one starts.

@@ -112,12 +112,9 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   if (!place.has_value()) return false;
   OdometryKeyframe* keyframe = keyframes_.Find(place->keyframe);
   TrackingGuess guess = place->cur_from_keyframe;
-  VelocityPrior velocity;
-  if (has_shutter_) {
-    velocity = shutter_tracking_.velocity()->Prior(std::nullopt, interval_,
-                                                   frame.color_shutter.offset);
-    guess.velocity = &velocity;
-  }
+  const VelocityPrior velocity = shutter_tracking_.velocity()->Prior(
+      std::nullopt, interval_, frame.color_shutter.offset);
+  if (has_shutter_) guess.velocity = &velocity;
   if (!attempts_.Try(frame, *keyframe, guess, result) ||
       result->status != TrackingStatus::kOk) {
     return false;

@@ -9,7 +9,6 @@ namespace {
 
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
-using Row6 = Eigen::Matrix<double, 1, 6>;
 
 // Width of the Cauchy loss, in sigmas.
 constexpr double kLossWidth = 2.0;
@@ -38,10 +37,11 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   Matrix12 hessian = Matrix12::Zero();
   Vector12 right = Vector12::Zero();
   // Adds a residual with its derivatives by both changes.
-  const auto add = [&](const Row6& by_motion, const Row6& by_velocity,
-                       double residual, double weight) {
+  const auto add = [&](const MotionVector& by_motion,
+                       const MotionVector& by_velocity, double residual,
+                       double weight) {
     Vector12 both;
-    both << by_motion.transpose(), by_velocity.transpose();
+    both << by_motion, by_velocity;
     hessian.selfadjointView<Eigen::Lower>().rankUpdate(both, weight);
     right -= weight * residual * both;
   };
@@ -53,7 +53,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     const double inverse = 1.0 / point.z();
     const double x = point.x() * inverse, y = point.y() * inverse;
     // Derivatives of x, y and z by the motion.
-    Row6 by_x, by_y, by_z;
+    MotionVector by_x, by_y, by_z;
     by_x << -x * y, 1.0 + x * x, -y, inverse, 0.0, -x * inverse;
     by_y << -1.0 - y * y, x * y, x, 0.0, inverse, -y * inverse;
     by_z << point.y(), -point.x(), 0.0, 0.0, 0.0, 1.0;
@@ -72,12 +72,11 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     // Between the colour and the depth exposure the surface moves along the
     // viewing ray; how far depends on its slope.
     const double since = timing.depth.RowTime(row, camera.height) - seen;
-    Row6 along_ray = Row6::Zero();
+    MotionVector along_ray = MotionVector::Zero();
     if (since != 0.0) {
       const double slope = cur.normal.dot(Eigen::Vector3d(x, y, 1.0));
       if (!(slope < kFlattest)) continue;
-      along_ray << point.cross(cur.normal).transpose() / slope,
-          cur.normal.transpose() / slope;
+      along_ray << point.cross(cur.normal) / slope, cur.normal / slope;
     }
     const double z = point.z() - cur.depth;
     add(by_z, -seen * by_z - since * along_ray, z,
