@@ -28,8 +28,8 @@ constexpr double kMinSeenShareOk = 0.3;
 constexpr double kMaxSigmaRotation = 0.005;    // rad
 constexpr double kMaxSigmaTranslation = 0.01;  // m
 
-// Without features to compare, it is degraded if its residuals spread wider, in
-// sigmas. Right motions have 0.8, with blur 1.9; wrong ones 2 to 5.
+// With pixels alone, as nothing led the way, it is degraded if its residuals
+// spread wider, in sigmas. Right motions have 0.8, with blur 1.9; wrong 2 to 5.
 constexpr double kMaxSigmaOk = 2.0;
 
 // Returns the largest standard deviation in any direction of a covariance.
