@@ -28,7 +28,8 @@ struct CameraSetup {
 
   // As in RgbdCamera.
   DepthCorrection depth_correction;
-  Shutter color_shutter, depth_shutter;
+  Shutter color_shutter;  // see RgbdCamera
+  Shutter depth_shutter;  // see RgbdCamera
 
   // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;

@@ -15,6 +15,7 @@
 
 namespace rgbd_pose {
 
+// Of clouds and meshes.
 struct FusionOptions {
   Camera camera;  // of all frames
 
@@ -38,6 +39,7 @@ struct MotionFilter {
   double min_distance = 0.05;  // m
   double min_angle_deg = 3.0;  // either limit is sufficient
 
+  // Whether a motion is that large.
   bool IsReached(const Rigid3d& last_from_cur) const {
     return last_from_cur.translation.norm() >= min_distance ||
            last_from_cur.Angle() * kDegreesPerRadian >= min_angle_deg;
