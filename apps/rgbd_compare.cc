@@ -56,8 +56,9 @@ int Main(const ExperimentSettings& settings, const ProgramInfo& info) {
   std::printf("%s", result.report.c_str());
   if (FLAGS_report) {
     std::printf("report in   %s\n",
-                HasReportLibrary() ? WriteComparisonReport(FLAGS_output).c_str()
-                                   : kNoReportLibrary);
+                HasReportLibrary()
+                    ? WriteReport("comparison", FLAGS_output).c_str()
+                    : kNoReportLibrary);
   }
   return result.is_usable ? kExitOk : kExitTrackingFailed;
 }

@@ -2,11 +2,9 @@
 
 #include <gflags/gflags.h>
 
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "apps/pipeline/odometry_run.h"
@@ -71,14 +69,11 @@ std::vector<int> ParseFrames(const std::string& text) {
   std::vector<int> frames;
   if (text.empty()) return frames;
   for (const std::string& word : SplitText(text, ',')) {
-    int number = 0;
-    const char* const end = word.data() + word.size();
-    const auto [rest, error] = std::from_chars(word.data(), end, number);
-    if (error != std::errc() || rest != end || number < 1) {
+    frames.push_back(ParseWhole(word).value_or(0));
+    if (frames.back() < 1) {
       throw InputError("--rpe_frames=" + text + ": '" + word +
                        "' is not a number of frames; give a list such as 1,6");
     }
-    frames.push_back(number);
   }
   return frames;
 }

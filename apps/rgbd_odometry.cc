@@ -101,10 +101,9 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   const RunResults results = run.Finish(sequence.GroundTruth());
   LogWarnings(results);
-  std::string text =
-      output.Write(results, threads, seconds, sequence.GroundTruth(),
-                   settings.sequence.dataset, FormatFlagFile(info), info.name,
-                   {{"stopped", flaws.stopped}});
+  std::string text = output.Write(
+      results, threads, seconds, sequence.GroundTruth(),
+      settings.sequence.dataset, info, {{"stopped", flaws.stopped}});
   if (FLAGS_report) {
     text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);

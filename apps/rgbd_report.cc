@@ -27,12 +27,6 @@ ProgramInfo Info() {
           {{"Input", {"run", "batch", "comparison"}}}};
 }
 
-std::string WriteReport() {
-  if (!FLAGS_batch.empty()) return WriteBatchReport(FLAGS_batch);
-  if (!FLAGS_comparison.empty()) return WriteComparisonReport(FLAGS_comparison);
-  return WriteRunReport(FLAGS_run);
-}
-
 int Main() {
   const int given =
       !FLAGS_run.empty() + !FLAGS_batch.empty() + !FLAGS_comparison.empty();
@@ -45,7 +39,11 @@ int Main() {
         "built without plotly.js, which pages need; run "
         "scripts/install_dependencies, then configure and build again");
   }
-  std::printf("report in   %s\n", WriteReport().c_str());
+  const std::string path =
+      !FLAGS_batch.empty()        ? WriteReport("batch", FLAGS_batch)
+      : !FLAGS_comparison.empty() ? WriteReport("comparison", FLAGS_comparison)
+                                  : WriteReport("run", FLAGS_run);
+  std::printf("report in   %s\n", path.c_str());
   return kExitOk;
 }
 

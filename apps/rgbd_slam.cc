@@ -84,11 +84,8 @@ void LoadMaps(const ProgramSettings& settings, Slam* slam) {
         "--localise_only does not change the map; leave out --save_map");
   }
   for (const std::string& folder : folders) {
-    try {
-      slam->Load(LoadMap(folder), settings.localise_only);
-    } catch (const InputError& error) {
-      throw InputError("--load_map=" + folder + ": " + error.what());
-    }
+    Located("--load_map=" + folder,
+            [&] { slam->Load(LoadMap(folder), settings.localise_only); });
   }
 }
 
@@ -178,8 +175,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
     more["calibration"] = CalibrationToJson(found->result);
   }
   text += output.Write(results, threads, seconds, sequence.GroundTruth(),
-                       settings.sequence.dataset, FormatFlagFile(info),
-                       info.name, more);
+                       settings.sequence.dataset, info, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
   output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));

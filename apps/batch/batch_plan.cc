@@ -3,7 +3,6 @@
 #include <link.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -45,27 +44,15 @@ std::vector<std::string> ParseList(const BatchSetting& setting,
                                    const std::string& text) {
   std::vector<std::string> values;
   for (const std::string& value : Split(text, ',')) {
-    try {
+    Located(std::string("--") + setting.list, [&] {
       if (std::count(values.begin(), values.end(), value) > 0) {
         throw InputError("'" + value + "' appears twice");
       }
       setting.check(value);
-    } catch (const InputError& error) {
-      throw InputError(std::string("--") + setting.list + ": " + error.what());
-    }
+    });
     values.push_back(value);
   }
   return values;
-}
-
-std::optional<int> ParseWhole(std::string_view text) {
-  int value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 0) {
-    return std::nullopt;
-  }
-  return value;
 }
 
 std::optional<int> FromEnvironment(const char* name) {

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "apps/calibration/calibration_data.h"
@@ -76,24 +74,6 @@ bool Connect(const Distance& distance, double sigma, double share,
   return !data->views.distances.empty();
 }
 
-std::optional<Eigen::Vector3d> PlaceOf(const Trajectory& truth, double time) {
-  const auto after = std::lower_bound(
-      truth.begin(), truth.end(), time,
-      [](const StampedPose& pose, double t) { return pose.timestamp < t; });
-  constexpr double kMaxGap = 0.1;  // s
-  if (after == truth.end()) return std::nullopt;
-  if (after == truth.begin()) {
-    if (after->timestamp != time) return std::nullopt;
-    return after->world_from_cam.translation;
-  }
-  const auto before = after - 1;
-  const double gap = after->timestamp - before->timestamp;
-  if (gap > kMaxGap) return std::nullopt;
-  const double share = (time - before->timestamp) / gap;
-  return (1.0 - share) * before->world_from_cam.translation +
-         share * after->world_from_cam.translation;
-}
-
 }  // namespace
 
 std::string AddKnownDistances(const Trajectory& path,
@@ -105,9 +85,11 @@ std::string AddKnownDistances(const Trajectory& path,
     return "the known length";
   }
   const auto true_distance = [&](double from, double to) {
-    const auto a = PlaceOf(*scale.ground_truth, from);
-    const auto b = PlaceOf(*scale.ground_truth, to);
-    return a.has_value() && b.has_value() ? (*a - *b).norm() : 0.0;
+    constexpr double kMaxGap = 0.1 + 1e-6;  // s; stamps are rounded
+    const auto a = InterpolatedPose(*scale.ground_truth, from, kMaxGap);
+    const auto b = InterpolatedPose(*scale.ground_truth, to, kMaxGap);
+    if (!a.has_value() || !b.has_value()) return 0.0;
+    return (a->translation - b->translation).norm();
   };
   if (scale.ground_truth != nullptr &&
       Connect(true_distance, /*sigma=*/0.005, /*share=*/0.0, data)) {

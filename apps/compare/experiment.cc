@@ -66,11 +66,7 @@ std::vector<std::string> ChosenLosses(const ExperimentSettings& settings,
   std::istringstream words(settings.losses);
   for (std::string loss; std::getline(words >> std::ws, loss, ',');) {
     loss.erase(loss.find_last_not_of(' ') + 1);
-    try {
-      ParseLoss(loss);
-    } catch (const InputError& error) {
-      throw InputError(std::string("--losses: ") + error.what());
-    }
+    Located("--losses", [&] { ParseLoss(loss); });
     if (std::find(losses.begin(), losses.end(), loss) != losses.end()) {
       throw InputError("--losses: '" + loss + "' appears twice");
     }

@@ -4,7 +4,6 @@
 #include "apps/export/export_format.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
-#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {

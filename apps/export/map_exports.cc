@@ -36,7 +36,7 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
         path / kMeshPreviewFile,
         preview.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     if (HasReportLibrary() && std::filesystem::exists(path / "report.html")) {
-      WriteRunReport(folder);
+      WriteReport("run", folder);
     }
   } catch (const InputError& error) {
     LOG(WARNING) << "the page of the run does not show the mesh: "

@@ -15,7 +15,6 @@
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/bags/mcap_format.h"
-#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {

@@ -25,13 +25,6 @@ std::string InlineScript(std::string_view script) {
   return text;
 }
 
-std::string WritePage(const std::string& folder, std::string_view kind,
-                      const nlohmann::json& data) {
-  std::string path = (std::filesystem::path(folder) / "report.html").string();
-  WriteFileAtomically(path, ReportPage(kind, data));
-  return path;
-}
-
 }  // namespace
 
 std::string InlineData(const nlohmann::json& data) {
@@ -71,18 +64,14 @@ std::string ReportPage(std::string_view kind, const nlohmann::json& data) {
                    {"%SCRIPT%", InlineScript(assets.script)}});
 }
 
-std::string WriteRunReport(const std::string& run_folder) {
-  return WritePage(run_folder, "run", RunReportData(run_folder));
-}
-
-std::string WriteBatchReport(const std::string& batch_folder) {
-  return WritePage(batch_folder, "batch", BatchReportData(batch_folder));
-}
-
-std::string WriteComparisonReport(const std::string& folder) {
-  const nlohmann::json data = CompareReportData(folder);
-  return WritePage(folder, data.contains("sequences") ? "comparison" : "sweep",
-                   data);
+std::string WriteReport(std::string_view kind, const std::string& folder) {
+  const nlohmann::json data = kind == "run"     ? RunReportData(folder)
+                              : kind == "batch" ? BatchReportData(folder)
+                                                : CompareReportData(folder);
+  if (data.contains("methods")) kind = "sweep";
+  std::string path = (std::filesystem::path(folder) / "report.html").string();
+  WriteFileAtomically(path, ReportPage(kind, data));
+  return path;
 }
 
 std::string WriteRunPage(const std::filesystem::path& staging_dir,
@@ -91,7 +80,7 @@ std::string WriteRunPage(const std::filesystem::path& staging_dir,
     return std::string("report in   ") + kNoReportLibrary + "\n";
   }
   try {
-    WriteRunReport(staging_dir.string());
+    WriteReport("run", staging_dir.string());
     return "report in   " + out + "/report.html\n";
   } catch (const InputError& error) {
     *why_not = error.what();

@@ -55,15 +55,9 @@ std::string ReportPage(std::string_view kind, const nlohmann::json& data);
 std::string CalibrationPage(const CalibrationResult& result,
                             const Trajectory& path);
 
-// Writes report.html for a run from the files in its folder; returns its path.
-// Throws InputError for missing or broken files.
-std::string WriteRunReport(const std::string& run_folder);
-
-// The same for a batch, from its summary.csv.
-std::string WriteBatchReport(const std::string& batch_folder);
-
-// The same for a comparison by rgbd_compare.
-std::string WriteComparisonReport(const std::string& folder);
+// Writes report.html for a "run", "batch" or "comparison" from the files in its
+// folder; returns its path. Throws InputError for missing or broken files.
+std::string WriteReport(std::string_view kind, const std::string& folder);
 
 // Writes report.html into the unpublished folder of a run; `out` is its final
 // folder. Returns the text that the program prints. If the disk is full, the

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/util/format.h"
-#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 

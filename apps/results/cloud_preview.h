@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
-#include "frontend/fusion/triangle_mesh.h"
+#include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
 

@@ -145,14 +145,13 @@ void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
 std::string RunOutput::Write(const RunResults& results, int threads,
                              double seconds, const Trajectory* truth,
                              const std::string& dataset,
-                             const std::string& flags,
-                             const std::string& program,
+                             const ProgramInfo& info,
                              const nlohmann::json& more) {
   const nlohmann::json summary = Summarise(results.frames, threads, seconds);
   const nlohmann::json jumps = FindJumps(results.frames);
   std::string text = FormatSummary(summary) + FormatJumps(jumps);
   nlohmann::json metrics = {
-      {"program", program},
+      {"program", info.name},
       {"dataset", dataset},
       {"unmatched_color", source_.unmatched_color()},
       {"dropped_frames", source_.dropped()},
@@ -189,7 +188,7 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   folder_.WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
   folder_.WriteFile("frames.csv", FormatFramesCsv(results.frames));
   folder_.WriteFile("edges.csv", FormatEdgesCsv(results.frames));
-  folder_.WriteFile("config.flags", flags);
+  folder_.WriteFile("config.flags", FormatFlagFile(info));
   // The name of the dataset may be invalid UTF-8.
   folder_.WriteFile("metrics.json",
                     metrics.dump(2, ' ', /*ensure_ascii=*/false,

@@ -9,6 +9,7 @@
 #include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/settings.h"
 #include "apps/results/run_folder.h"
+#include "apps/shell/program.h"
 #include "frontend/fusion/cloud_fusion.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/frame_source.h"
@@ -42,14 +43,13 @@ class RunOutput {
   // The folder of the files; callers may add further files.
   RunFolder& folder() { return folder_; }
 
-  // Writes all files except the page. `flags` goes into config.flags;
+  // Writes all files except the page. The flags go into config.flags;
   // `dataset`, the program's name and `more` (an object) go into metrics.json.
   // `seconds` is the time of the whole program up to the last frame, with
   // `threads` threads. `truth` may be null. Returns the text to print.
   std::string Write(const RunResults& results, int threads, double seconds,
                     const Trajectory* truth, const std::string& dataset,
-                    const std::string& flags, const std::string& program,
-                    const nlohmann::json& more);
+                    const ProgramInfo& info, const nlohmann::json& more);
 
  private:
   RunOutputSettings settings_;

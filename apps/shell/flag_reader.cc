@@ -1,5 +1,3 @@
-#include "apps/shell/flag_reader.h"
-
 #include <gflags/gflags.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 

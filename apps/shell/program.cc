@@ -17,7 +17,6 @@
 #include <system_error>
 #include <thread>
 
-#include "apps/shell/flag_reader.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"

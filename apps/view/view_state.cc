@@ -5,9 +5,9 @@
 #include <random>
 #include <utility>
 
+#include "core/util/format.h"
 #include "frontend/frame/depth_warper.h"
 #include "frontend/frame/observe.h"
-#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {

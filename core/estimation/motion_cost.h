@@ -30,6 +30,13 @@ constexpr ceres::Ownership BlockOwnership(Assembly assembly) {
                                            : ceres::TAKE_OWNERSHIP;
 }
 
+// What a residual type over matches packs its columns from.
+struct CostInput {
+  const Correspondences& matches;
+  Rigid3d cur_from_prev;               // weights are frozen at this motion
+  const MotionPrior* prior = nullptr;  // null: nothing is known
+};
+
 // A robustified sum over matches, linearised at one motion:
 // cost(x + d) ~ cost + gradient . d + 1/2 d^T hessian d (Gauss-Newton).
 struct NormalEquations {

@@ -122,7 +122,7 @@ inline constexpr std::array<CameraParameter, 12> kCameraParameters = {
      {"k5", &Camera::k5},
      {"k6", &Camera::k6}}};
 
-// Every camera file has this many; the others are written only if not 0.
+// Every map has this many; the others are written only if they are used.
 inline constexpr size_t kNumUsualParameters = 9;
 
 // Errors of depth images, which sources correct.

@@ -1,6 +1,5 @@
 #include "core/util/format.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdarg>

@@ -31,4 +31,15 @@ inline void RequireSound(const std::string& problem,
   if (!problem.empty()) throw InputError(before + problem);
 }
 
+// Runs `call`; adds where it was and some advice to its InputError.
+template <typename Call>
+auto Located(const std::string& place, Call call,
+             const std::string& advice = "") {
+  try {
+    return call();
+  } catch (const InputError& error) {
+    throw InputError(place + ": " + error.what() + advice);
+  }
+}
+
 }  // namespace rgbd_pose

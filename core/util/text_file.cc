@@ -138,6 +138,16 @@ double ParseNumber(std::string_view word, const std::string& path, int line,
   return value;
 }
 
+std::optional<int> ParseWhole(std::string_view text) {
+  int value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0) {
+    return std::nullopt;
+  }
+  return value;
+}
+
 double ParseTimestamp(std::string_view word, const std::string& path,
                       int line) {
   constexpr double kLatest = 1e11;  // in the year 5138

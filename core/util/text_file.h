@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ std::string Join(const std::vector<std::string>& names,
 // Otherwise throws InputError with the file, the line and `what`.
 double ParseNumber(std::string_view word, const std::string& path, int line,
                    std::string_view what);
+
+// A whole number from 0 on that takes up the whole text; nothing otherwise.
+std::optional<int> ParseWhole(std::string_view text);
 
 // A time in seconds: as ParseNumber, but not milli- or nanoseconds since 1970.
 double ParseTimestamp(std::string_view word, const std::string& path, int line);

@@ -4,7 +4,6 @@
 
 #include "core/estimation/motion_cost.h"
 #include "costs/assembly/packed_cost.h"
-#include "costs/parts/cost_input.h"
 
 namespace rgbd_pose {
 

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "core/estimation/correspondences.h"
+#include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/lane_math.h"
-#include "costs/parts/cost_input.h"
 #include "costs/parts/moved_point.h"
 #include "costs/parts/point_sums.h"
 

@@ -7,7 +7,6 @@
 #include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/lane_math.h"
-#include "costs/parts/cost_input.h"
 
 namespace rgbd_pose {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "costs/parts/cost_input.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/parts/forward_error.h"
 #include "costs/parts/moved_point.h"
 #include "costs/parts/point_sums.h"

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "core/estimation/motion_cost.h"
 #include "core/util/lane_math.h"
-#include "costs/parts/cost_input.h"
 #include "costs/parts/whitening.h"
 
 namespace rgbd_pose {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "costs/parts/cost_input.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/parts/forward_error.h"
 
 namespace rgbd_pose {

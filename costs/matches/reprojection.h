@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/estimation/motion_cost.h"
-#include "costs/parts/cost_input.h"
 #include "costs/parts/image_error.h"
 
 namespace rgbd_pose {

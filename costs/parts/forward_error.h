@@ -4,7 +4,6 @@
 
 #include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
-#include "costs/parts/cost_input.h"
 #include "costs/parts/moved_point.h"
 #include "costs/parts/whitening.h"
 

@@ -14,17 +14,6 @@ inline InputError Damaged(const std::string& what) {
   return InputError(what + "; it is damaged: copy it again");
 }
 
-// Runs `call`; adds where it was and some advice to its InputError.
-template <typename Call>
-auto Located(const std::string& place, Call call,
-             const std::string& advice = "") {
-  try {
-    return call();
-  } catch (const InputError& error) {
-    throw InputError(place + ": " + error.what() + advice);
-  }
-}
-
 // Binary layout of the messages of a bag. Both have the same fields in the same
 // order, but differ in padding, string terminators and the header's counter.
 enum class WireFormat {

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "frontend/features/descriptor_matching.h"
-#include "frontend/features/frontends.h"
+#include "frontend/features/frontend.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/frame/observe.h"
 

@@ -2,7 +2,7 @@
 
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
-#include "frontend/features/frontends.h"
+#include "frontend/features/descriptor_matching.h"
 
 namespace rgbd_pose {
 namespace {

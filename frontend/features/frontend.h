@@ -15,6 +15,8 @@
 
 namespace rgbd_pose {
 
+struct DescriptorMethod;
+
 // What all frontends share.
 struct FrontendOptions {
   Camera camera;  // of all frames
@@ -124,5 +126,23 @@ std::vector<std::string> FrontendNames();
 // if there is no such frontend, or with the reason if options are invalid.
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options);
+
+// The frontends of MakeFrontend, which checks the options.
+
+// Tracks corners with pyramidal Lucas-Kanade (Bouguet 2001), always from the
+// reference, which prevents drift.
+std::unique_ptr<Frontend> MakeKltFrontend(const FrontendOptions& options);
+
+// Finds corners by aligning small patches coarse to fine (patch.h), warped
+// according to depth, surface normal and motion, from a start within some
+// pixels (see DirectTracker::FindStart).
+std::unique_ptr<Frontend> MakePatchFrontend(const FrontendOptions& options);
+
+// Detects keypoints in every frame and matches them by their descriptors: first
+// near the places predicted by the guess, anywhere if too few are found there.
+// This is slower than tracking corners, but it needs no good guess and
+// tolerates larger changes of scale and view. `method` must outlive it.
+std::unique_ptr<Frontend> MakeDescriptorFrontend(
+    const FrontendOptions& options, const DescriptorMethod& method);
 
 }  // namespace rgbd_pose

@@ -2,7 +2,7 @@
 #include <opencv2/video/tracking.hpp>
 #include <vector>
 
-#include "frontend/features/frontends.h"
+#include "frontend/features/frontend.h"
 #include "frontend/features/point_frontend.h"
 
 namespace rgbd_pose {

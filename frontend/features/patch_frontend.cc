@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "frontend/features/frontends.h"
+#include "frontend/features/frontend.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/features/patch.h"
 #include "frontend/frame/image_pyramid.h"

@@ -25,10 +25,10 @@ constexpr const char* kRgbdKeys[] = {"color_time_offset",    "color_readout",
                                      "inverse_depth_offset", "depth_rotation",
                                      "depth_translation"};
 
-std::string Digits(double value) { return Format("%.10g", value); }
-
 std::string List(const Eigen::Vector3d& v) {
-  return "[" + Join({Digits(v.x()), Digits(v.y()), Digits(v.z())}) + "]";
+  return "[" +
+         Join({ShortNumber(v.x()), ShortNumber(v.y()), ShortNumber(v.z())}) +
+         "]";
 }
 
 // The lines with these keys.
@@ -40,11 +40,11 @@ std::string RgbdLines(const RgbdCamera& camera) {
   for (const ShutterParameter& parameter : kShutterParameters) {
     const double value = camera.*parameter.image.*parameter.value;
     if (value != 0.0 || camera.color_shutter.is_known) {
-      add(parameter.name, Digits(value));
+      add(parameter.name, ShortNumber(value));
     }
   }
   const double offset = camera.depth_correction.inverse_depth_offset;
-  if (offset != 0.0) add("inverse_depth_offset", Digits(offset));
+  if (offset != 0.0) add("inverse_depth_offset", ShortNumber(offset));
   const Rigid3d& moved = camera.depth_correction.depth_from_color;
   if (!moved.IsIdentity()) {
     add("depth_rotation", List(RotationVector(moved.rotation)));
@@ -118,7 +118,7 @@ void Set(YAML::Node* map, const std::string& key, const Value& value) {
 YamlLines OrbSlamLines(const Camera& camera, const std::string& prefix) {
   YamlLines lines;
   for (const auto& [name, value] : kCameraParameters) {
-    lines.emplace_back(prefix + name, Digits(camera.*value));
+    lines.emplace_back(prefix + name, ShortNumber(camera.*value));
   }
   if (camera.lens_model == LensModel::kEquidistant) {
     lines.emplace_back("Camera.type", "\"KannalaBrandt8\"");
@@ -130,7 +130,7 @@ YamlLines OrbSlamLines(const Camera& camera, const std::string& prefix) {
 
 YAML::Node ToNode(const std::vector<double>& values) {
   YAML::Node node;
-  for (const double value : values) node.push_back(Digits(value));
+  for (const double value : values) node.push_back(ShortNumber(value));
   node.SetStyle(YAML::EmitterStyle::Flow);
   return node;
 }
@@ -233,7 +233,7 @@ std::optional<std::string> Edited(const RgbdCamera& camera,
   const bool is_of_orb_slam = file.Has(prefix + "fx");
   YamlLines values;
   if (is_of_orb_slam) values = OrbSlamLines(camera.camera, prefix);
-  values.emplace_back(scale, Digits(camera.depth_scale));
+  values.emplace_back(scale, ShortNumber(camera.depth_scale));
   if (is_of_orb_slam) {
     const std::string lines = EditLines(text, file.node(), values, camera);
     if (Says(lines, camera)) return lines;
@@ -256,7 +256,7 @@ std::string FormatCameraFile(const RgbdCamera& camera,
         "# Other entries of that file are not included.\n";
   }
   YamlLines values = OrbSlamLines(camera.camera, "Camera.");
-  values.emplace_back("DepthMapFactor", Digits(camera.depth_scale));
+  values.emplace_back("DepthMapFactor", ShortNumber(camera.depth_scale));
   const std::string first = "%YAML:1.0\n";
   std::string text =
       EditLines(first, YAML::Node(YAML::NodeType::Map), values, camera);

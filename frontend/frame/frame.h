@@ -14,8 +14,8 @@ struct Frame {
   int index = 0;                // index in the source, from 0
   double timestamp = 0.0;       // of the colour image, s
   double depth_delay = 0.0;     // stamp of depth minus stamp of colour, s
-  cv::Mat gray;                 // CV_8UC1
-  cv::Mat depth;                // CV_16UC1, registered to gray, the same size
+  cv::Mat gray = {};            // CV_8UC1
+  cv::Mat depth = {};           // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre
 
   // Exposure times of the rows, relative to the stamp of each image.
@@ -26,7 +26,7 @@ struct Frame {
   std::optional<Twist> twist = {};
 
   // CV_8UC3 (BGR), of the size of gray; empty unless the source keeps colours.
-  cv::Mat color;
+  cv::Mat color = {};
 
   // Depth at a pixel, m; 0 if there is none.
   double DepthAt(int column, int row) const {

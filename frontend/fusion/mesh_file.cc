@@ -1,8 +1,6 @@
 #include "frontend/fusion/mesh_file.h"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <limits>
 
@@ -10,7 +8,6 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
-#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {

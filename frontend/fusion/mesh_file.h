@@ -1,11 +1,26 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "frontend/fusion/triangle_mesh.h"
-
 namespace rgbd_pose {
+
+// A point of a map with its colour.
+struct ColoredPoint {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  // m
+  std::array<uint8_t, 3> color = {};                   // red, green, blue
+};
+
+// A coloured surface.
+struct TriangleMesh {
+  std::vector<ColoredPoint> vertices;
+
+  // Indices into `vertices`, counter-clockwise as seen from the camera.
+  std::vector<Eigen::Vector3i> triangles;
+};
 
 // Writes a mesh completely or not at all, in the format given by the extension,
 // .ply or .glb. Throws InputError on failure and for another extension.

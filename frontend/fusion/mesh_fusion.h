@@ -11,8 +11,8 @@
 #include "frontend/frame/frame.h"
 #include "frontend/frame/undistorter.h"
 #include "frontend/fusion/cloud_fusion.h"
+#include "frontend/fusion/mesh_file.h"
 #include "frontend/fusion/surface_mesh.h"
-#include "frontend/fusion/triangle_mesh.h"
 
 namespace rgbd_pose {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/fusion/triangle_mesh.h"
+#include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frontend/fusion/triangle_mesh.h"
+#include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
 

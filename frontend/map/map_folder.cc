@@ -12,7 +12,6 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/map/map_index.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,5 +1,3 @@
-#include "frontend/map/map_index.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "core/util/text_hash.h"
+#include "frontend/map/map_folder.h"
 
 namespace rgbd_pose {
 namespace {

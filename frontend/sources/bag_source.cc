@@ -162,12 +162,10 @@ class BagSource final : public FrameSource {
               const cv::Mat depth = DecodeRosDepth(
                   ReadImageOf(*bag_, {topics_.depth, 0.0, pair.depth.message}),
                   depth_name, assembly_.camera().depth_scale);
-              Frame frame = assembly_.Make({gray, color_name}, color,
-                                           {depth, depth_name});
-              frame.index = index;
-              frame.timestamp = pair.color.timestamp;
-              frame.depth_delay = pair.depth.timestamp - pair.color.timestamp;
-              return frame;
+              return assembly_.Make(
+                  {index, pair.color.timestamp,
+                   pair.depth.timestamp - pair.color.timestamp},
+                  {gray, color_name}, color, {depth, depth_name});
             }};
   }
 

@@ -63,12 +63,11 @@ FrameAssembly::FrameAssembly(const CameraSetup& setup, bool keep_color)
       std::make_shared<DepthRegistration>(*setup.depth_camera, camera_.camera);
 }
 
-Frame FrameAssembly::Make(const Named& gray, const cv::Mat& color,
+Frame FrameAssembly::Make(Frame frame, const Named& gray, const cv::Mat& color,
                           const Named& depth) const {
   CheckSize(gray, SizeOf(camera_.camera), "camera");
   CheckSize(depth, depth_size_,
             registration_ == nullptr ? "camera" : "depth camera");
-  Frame frame;
   frame.gray = gray.image;
   if (keep_color_) frame.color = color;
   frame.depth = registration_ == nullptr
@@ -78,12 +77,12 @@ Frame FrameAssembly::Make(const Named& gray, const cv::Mat& color,
   return CorrectDepth(camera_, std::move(frame));
 }
 
-Frame FrameAssembly::Read(const std::string& color_path,
+Frame FrameAssembly::Read(Frame frame, const std::string& color_path,
                           const std::string& depth_path) const {
   cv::Mat color;
   const cv::Mat gray =
       ReadGrayImageFile(color_path, keep_color_ ? &color : nullptr);
-  return Make({gray, color_path}, color,
+  return Make(std::move(frame), {gray, color_path}, color,
               {ReadDepthImageFile(depth_path), depth_path});
 }
 

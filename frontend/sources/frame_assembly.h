@@ -34,13 +34,14 @@ class FrameAssembly {
     std::string name;  // for example its path
   };
 
-  // Makes a frame without time stamps from gray CV_8UC1, the colours if they
-  // are kept, and depth CV_16UC1. Throws InputError if the images do not fit
-  // their cameras. Thread-safe.
-  Frame Make(const Named& gray, const cv::Mat& color, const Named& depth) const;
+  // Completes a frame with index and stamps by gray CV_8UC1, the colours if
+  // they are kept, and depth CV_16UC1. Throws InputError if the images do not
+  // fit their cameras. Thread-safe.
+  Frame Make(Frame frame, const Named& gray, const cv::Mat& color,
+             const Named& depth) const;
 
   // The same from two files.
-  Frame Read(const std::string& color_path,
+  Frame Read(Frame frame, const std::string& color_path,
              const std::string& depth_path) const;
 
  private:

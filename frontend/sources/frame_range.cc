@@ -45,10 +45,8 @@ bool Parse(std::string_view text, FrameRange* range) {
     return false;
   }
   if (parts.size() == 2) {
-    const char* const end = parts[1].data() + parts[1].size();
-    const auto [rest, error] =
-        std::from_chars(parts[1].data(), end, range->step);
-    if (error != std::errc() || rest != end || range->step < 1) return false;
+    range->step = ParseWhole(parts[1]).value_or(0);
+    if (range->step < 1) return false;
   }
   const bool is_time = first.is_given ? first.is_time : last.is_time;
   if (first.is_given && last.is_given &&

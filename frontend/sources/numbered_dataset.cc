@@ -1,4 +1,3 @@
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -20,15 +19,13 @@ namespace fs = std::filesystem;
 std::optional<int> NumberIn(const std::string& name,
                             const std::string& pattern) {
   const size_t star = pattern.find('*');
-  if (name.compare(0, star, pattern, 0, star) != 0) return std::nullopt;
-  int number = 0;
-  const auto [rest, error] =
-      std::from_chars(name.data() + star, name.data() + name.size(), number);
-  if (error != std::errc() || number < 0 ||
-      pattern.compare(star + 1, pattern.npos, rest) != 0) {
+  const size_t end = name.size() - (pattern.size() - star - 1);
+  if (name.size() < pattern.size() ||
+      name.compare(0, star, pattern, 0, star) != 0 ||
+      name.compare(end, name.npos, pattern, star + 1) != 0) {
     return std::nullopt;
   }
-  return number;
+  return ParseWhole(name.substr(star, end - star));
 }
 
 // Paths by number, of the first alternative with any images.
@@ -68,10 +65,8 @@ class NumberedDataset final : public Dataset {
   }
   Frame Read(int index) const override {
     const NumberedFrame& files = folder_.frames[index];
-    Frame frame = assembly_.Read(files.color_path, files.depth_path);
-    frame.index = index;
-    frame.timestamp = timestamp(index);
-    return frame;
+    return assembly_.Read({index, timestamp(index)}, files.color_path,
+                          files.depth_path);
   }
   const RgbdCamera& camera() const override { return assembly_.camera(); }
   Trajectory ground_truth() const override {

@@ -210,12 +210,10 @@ class OpenNi2Source final : public FrameSource {
                              color.pixels.channels() == 3 ? cv::COLOR_RGB2BGR
                                                           : cv::COLOR_GRAY2BGR);
               }
-              Frame frame = assembly_->Make({gray, name_ + ": colour"}, bgr,
-                                            {depth.pixels, name_ + ": depth"});
-              frame.index = index;
-              frame.timestamp = color.stamp;
-              frame.depth_delay = depth.stamp - color.stamp;
-              return frame;
+              return assembly_->Make(
+                  {index, color.stamp, depth.stamp - color.stamp},
+                  {gray, name_ + ": colour"}, bgr,
+                  {depth.pixels, name_ + ": depth"});
             }};
   }
 

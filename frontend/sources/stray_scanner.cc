@@ -77,15 +77,13 @@ class StrayScanner final : public FrameSource {
 
   std::optional<RgbdFrame> Next() override {
     if (next_ == frames_.size()) return std::nullopt;
-    const size_t index = next_++;
+    const int index = next_++;
     std::shared_ptr<cv::Mat> image;
     for (; num_decoded_ <= frames_[index].image; ++num_decoded_) {
       image = video_.Next();
     }
     return RgbdFrame{frames_[index].timestamp, [this, index, image] {
-                       Frame frame = Read(frames_[index], video_.At(image));
-                       frame.index = static_cast<int>(index);
-                       return frame;
+                       return Read(index, video_.At(image));
                      }};
   }
 
@@ -110,7 +108,8 @@ class StrayScanner final : public FrameSource {
     return FrameAssembly(ChooseCamera(options, own), options.keep_color);
   }
 
-  Frame Read(const StrayRow& row, const cv::Mat& image) const {
+  Frame Read(int index, const cv::Mat& image) const {
+    const StrayRow& row = frames_[index];
     const cv::Size size(camera_.width, camera_.height);
     const Camera focused = row.camera.value_or(camera_);
     cv::Mat color;
@@ -123,13 +122,11 @@ class StrayScanner final : public FrameSource {
     cv::Mat gray;
     cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
     const cv::Mat depth = ReadDepth(row);
-    Frame frame = assembly_.Make(
-        {gray, video_.path()}, color,
+    return assembly_.Make(
+        {index, row.timestamp}, {gray, video_.path()}, color,
         {ResampleDepth(depth, size,
                        PixelMap(camera_, Scaled(focused, depth.size()))),
          row.depth_path});
-    frame.timestamp = row.timestamp;
-    return frame;
   }
 
   static cv::Mat ReadDepth(const StrayRow& row) {

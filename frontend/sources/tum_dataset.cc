@@ -227,11 +227,9 @@ class TumDataset final : public Dataset {
   }
   Frame Read(int index) const override {
     const auto& [color, depth] = lists_.pairs[index];
-    Frame frame = assembly_.Read(color.path, depth.path);
-    frame.index = index;
-    frame.timestamp = color.timestamp;
-    frame.depth_delay = depth.timestamp - color.timestamp;
-    return frame;
+    return assembly_.Read(
+        {index, color.timestamp, depth.timestamp - color.timestamp}, color.path,
+        depth.path);
   }
   const RgbdCamera& camera() const override { return assembly_.camera(); }
   int unmatched_color() const override { return lists_.unmatched_color; }

@@ -7,10 +7,10 @@
 #include <optional>
 #include <system_error>
 
-#include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/sources/frame_stream.h"
 
@@ -58,34 +58,6 @@ cv::Mat WithGrayOf(const Frame& frame) {
   return color;
 }
 
-// The text of camera.yaml.
-std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
-  const Camera& camera = rgbd_camera.camera;
-  std::string text = "%YAML:1.0\n";
-  const auto add = [&text](const std::string& key, double value) {
-    text += key + ": " + ShortNumber(value) + "\n";
-  };
-  if (camera.lens_model == LensModel::kEquidistant) {
-    text += "Camera.type: \"KannalaBrandt8\"\n";
-  }
-  for (size_t i = 0; i < kCameraParameters.size(); ++i) {
-    const auto& [name, value] = kCameraParameters[i];
-    if (i < kNumUsualParameters || camera.*value != 0.0) {
-      add(std::string("Camera.") + name, camera.*value);
-    }
-  }
-  add("Camera.width", camera.width);
-  add("Camera.height", camera.height);
-  add("DepthMapFactor", rgbd_camera.depth_scale);
-  for (const ShutterParameter& parameter : kShutterParameters) {
-    const double value = rgbd_camera.*parameter.image.*parameter.value;
-    if (value != 0.0 || rgbd_camera.color_shutter.is_known) {
-      add(parameter.name, value);
-    }
-  }
-  return text;
-}
-
 // The images are written by the threads that read them, the lists at the end.
 WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
                          const TumWriterOptions& options) {
@@ -122,8 +94,10 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
     WriteFileAtomically((folder / "groundtruth.txt").string(),
                         FormatTrajectory(ground_truth));
   }
+  RgbdCamera camera = source->camera();
+  camera.depth_correction = {};  // the frames are corrected
   WriteFileAtomically((folder / "camera.yaml").string(),
-                      FormatCameraYaml(source->camera()));
+                      FormatCameraFile(camera, ""));
   return written;
 }
 

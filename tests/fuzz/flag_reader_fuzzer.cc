@@ -2,7 +2,7 @@
 
 #include <gflags/gflags.h>
 
-#include "apps/shell/flag_reader.h"
+#include "apps/shell/program.h"
 #include "tests/fuzz/fuzz_input.h"
 
 DEFINE_string(word, "", "one of each type that the programs use");

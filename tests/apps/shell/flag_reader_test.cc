@@ -1,8 +1,7 @@
-#include "apps/shell/flag_reader.h"
-
 #include <gflags/gflags.h>
 #include <gtest/gtest.h>
 
+#include "apps/shell/program.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

@@ -19,7 +19,6 @@
 #include <tuple>
 
 #include "core/util/text_file.h"
-#include "frontend/map/map_index.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/map_parts.h"
 #include "tests/support/run_program.h"

@@ -29,8 +29,8 @@ class TumWriterTest : public testing::Test {
         folder_(parent_ / "new" / "sequence") {
     fs::remove_all(parent_);
     options_.frames = 4;
-    options_.camera.camera = {160,  120,  130.5, 131.25, 79.5, 59.5,
-                              0.01, 0.02, 0.0,   0.001,  0.0};
+    options_.camera.camera = {160,       120,  130.5, 131.25, 79.5, 59.5,
+                              0.1 / 3.0, 0.02, 0.0,   0.001,  0.0};
     options_.camera.depth_scale = 1000.0;
   }
   ~TumWriterTest() override { fs::remove_all(parent_); }
@@ -138,7 +138,7 @@ TEST_F(TumWriterTest, CameraReadsBackExactly) {
   EXPECT_EQ(camera.camera.fy, 131.25);
   EXPECT_EQ(camera.camera.cx, 79.5);
   EXPECT_EQ(camera.camera.cy, 59.5);
-  EXPECT_EQ(camera.camera.k1, 0.01);
+  EXPECT_EQ(camera.camera.k1, 0.1 / 3.0);
   EXPECT_EQ(camera.camera.k2, 0.02);
   EXPECT_EQ(camera.camera.p1, 0.0);
   EXPECT_EQ(camera.camera.p2, 0.001);
