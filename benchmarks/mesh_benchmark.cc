@@ -26,14 +26,6 @@ DEFINE_string(by, "rgbd_pose", "whose mesh");
 DEFINE_double(voxel, 0.01, "side of a voxel (m)");
 DEFINE_double(max_depth, rgbd_pose::MeshFusionOptions().max_depth,
               "depths beyond are left out (m)");
-DEFINE_double(truncation_voxels,
-              rgbd_pose::MeshFusionOptions().truncation_voxels,
-              "how far around the surface distances are kept, in voxels");
-DEFINE_double(truncation_sigmas,
-              rgbd_pose::MeshFusionOptions().truncation_sigmas,
-              "the same in standard deviations of depth");
-DEFINE_double(max_sigma, 0.0,
-              "what is known no better (m) is left out; 0: a voxel");
 DEFINE_string(poses, "",
               "trajectory (TUM text) of a run on the same sequence, in place "
               "of the true poses, all from the same first one");
@@ -210,9 +202,6 @@ int Main() {
   fusion.camera = options.camera.camera;
   fusion.voxel_size = FLAGS_voxel;
   fusion.depth.max_depth = fusion.max_depth = FLAGS_max_depth;
-  fusion.truncation_voxels = FLAGS_truncation_voxels;
-  fusion.truncation_sigmas = FLAGS_truncation_sigmas;
-  fusion.max_sigma = FLAGS_max_sigma;
   std::unique_ptr<MeshMaker> maker;
   for (const MeshMakerType& type : MeshMakerTypes()) {
     if (type.name == FLAGS_by) maker = type.make(fusion);
@@ -253,6 +242,6 @@ int main(int argc, char** argv) {
       "mesh_benchmark --by=rgbd_pose",
       {{"All",
         {"scene", "path", "frames", "rate", "by", "voxel", "max_depth",
-         "truncation_voxels", "truncation_sigmas", "max_sigma", "poses"}}}};
+         "poses"}}}};
   return rgbd_pose::RunProgram(argc, argv, info, rgbd_pose::Main);
 }

@@ -18,8 +18,7 @@ class Open3dMesh final : public MeshMaker {
         intrinsics_(options.camera.width, options.camera.height,
                     options.camera.fx, options.camera.fy, options.camera.cx,
                     options.camera.cy),
-        volume_(options.voxel_size,
-                options.truncation_voxels * options.voxel_size,
+        volume_(options.voxel_size, options.kTruncation * options.voxel_size,
                 integration::TSDFVolumeColorType::RGB8) {}
 
   void Add(const Frame& frame, const Rigid3d& world_from_cam) override {

@@ -104,15 +104,6 @@ class PoseGraph {
   void AddEdge(const RelativePose& edge,
                const ceres::LossFunction* loss = nullptr);
 
-  // Sets the start of the next Solve, or the final value if the pose is fixed.
-  void SetPose(int pose, const Rigid3d& world_from_cam) {
-    graph_.poses[pose].world_from_cam = world_from_cam;
-  }
-  // Fixes or frees a pose.
-  void SetFixed(int pose, bool is_fixed) {
-    graph_.poses[pose].is_fixed = is_fixed;
-  }
-
   // Optimises the poses that are not fixed. Ignores edges between fixed poses.
   GraphSolution Solve();
 

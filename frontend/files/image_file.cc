@@ -8,7 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-#include "frontend/files/png_codec.h"
+#include "frontend/files/png_decoder.h"
 #endif
 
 namespace rgbd_pose {
@@ -138,12 +138,6 @@ cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
 }
 
 std::string EncodePng(const cv::Mat& image, const std::vector<int>& settings) {
-#ifdef RGBD_POSE_HAS_LIBDEFLATE
-  const bool is_ours = image.type() == CV_8UC1 || image.type() == CV_16UC1;
-  if (settings.empty() && is_ours && !image.empty()) {
-    return EncodePngByLibdeflate(image);
-  }
-#endif
   std::vector<uchar> bytes;
   cv::imencode(".png", image, bytes, settings);
   return {bytes.begin(), bytes.end()};

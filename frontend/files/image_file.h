@@ -26,8 +26,7 @@ cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
                         cv::Mat* color = nullptr);
 cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path);
 
-// Encodes an image as a PNG file; `settings` as for cv::imwrite. Without any it
-// takes the fastest way: for grey and depth libdeflate, if the build has it.
+// Encodes an image as a PNG file; `settings` as for cv::imwrite.
 std::string EncodePng(const cv::Mat& image,
                       const std::vector<int>& settings = {});
 

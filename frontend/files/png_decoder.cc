@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frontend/files/image_file.h"
-#include "frontend/files/png_codec.h"
+#include "frontend/files/png_decoder.h"
 
 namespace rgbd_pose {
 namespace {

@@ -26,13 +26,6 @@ void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
 }  // namespace
 
 std::string MeshFusionOptions::Check() const {
-  if (!(truncation_voxels >= 1.0 && truncation_voxels <= 1e3) ||
-      !(truncation_sigmas >= 0.0 && truncation_sigmas <= 1e3)) {
-    return "the truncation must be 1 to 1000 voxels and 0 to 1000 sigmas";
-  }
-  if (!(max_sigma >= 0.0 && max_sigma <= 1e3)) {
-    return "max_sigma must be 0 to 1000 m";
-  }
   if (threads < 1) return "at least one thread is needed";
   const double farthest = std::min(depth.max_depth, max_depth);
   if (!(depth.min_depth > 0.0 && farthest > depth.min_depth &&
@@ -51,9 +44,8 @@ MeshFusion::MeshFusion(const MeshFusionOptions& options)
   for (int i = 0; i < steps; ++i) {
     const double sigma =
         options.depth.noise.sigma((i + 0.5) / kDepthStepsPerMetre);
-    uses_.push_back({static_cast<float>(std::max(
-                         options.truncation_voxels * options.voxel_size,
-                         options.truncation_sigmas * sigma)),
+    uses_.push_back({static_cast<float>(options.kTruncation *
+                                        std::max(options.voxel_size, sigma)),
                      static_cast<float>(1.0 / (sigma * sigma))});
   }
 }
@@ -72,9 +64,9 @@ void MeshFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   });
 }
 
+// Leaves out what all measurements together do not determine to a voxel.
 TriangleMesh MeshFusion::Mesh() const {
-  const double sigma =
-      options_.max_sigma > 0.0 ? options_.max_sigma : options_.voxel_size;
+  const double sigma = options_.voxel_size;
   return SurfaceMesh(volume_, options_.voxel_size,
                      static_cast<float>(1.0 / (sigma * sigma)));
 }
@@ -127,8 +119,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
       world_from_cam.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f t = world_from_cam.translation.cast<float>();
   const float near = std::max(
-      step,
-      static_cast<float>(options_.truncation_voxels * options_.voxel_size));
+      step, static_cast<float>(options_.kTruncation * options_.voxel_size));
   std::vector<SeenBlock> seen;
   std::vector<SeenBlock> last;  // of the previous ray, by step
   for (int y = 0; y < depth_.rows; y += stride) {

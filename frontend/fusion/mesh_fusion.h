@@ -17,17 +17,12 @@
 namespace rgbd_pose {
 
 struct MeshFusionOptions : FusionOptions {
+  // Truncation distance around the surface: this number of voxels or of
+  // standard deviations of depth, whichever is larger.
+  static constexpr double kTruncation = 3.0;
+
   // Larger depths (m) are not used either: noise spreads each over many voxels.
   double max_depth = 4.0;
-
-  // Truncation distance around the surface: this number of voxels or this
-  // number of standard deviations of depth, whichever is larger.
-  double truncation_voxels = 3.0;
-  double truncation_sigmas = 3.0;
-
-  // Maximum standard deviation (m) of the surface from all its measurements
-  // together. Less certain parts are left out. 0: the voxel size.
-  double max_sigma = 0.0;
 
   // Number of threads used by Add; the mesh does not depend on it.
   int threads = 1;

@@ -1,6 +1,6 @@
 // The project's own decoder of PNG files.
 
-#include "frontend/files/png_codec.h"
+#include "frontend/files/png_decoder.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/support/png_parts.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/util/text_file.h"
-#include "frontend/files/png_codec.h"
+#include "frontend/files/png_decoder.h"
 #include "tests/support/png_parts.h"
 #include "tests/support/temp_folder.h"
 

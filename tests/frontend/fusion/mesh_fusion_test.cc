@@ -98,7 +98,8 @@ TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
 TEST(MeshFusionTest, ASmallImageLeavesNoHoles) {
   MeshFusionOptions options;
   options.camera = {160, 120, 131.25, 131.25, 79.5, 59.5};
-  options.max_sigma = 1.0;  // one frame is enough
+  options.depth.noise.constant = 0.001;  // one frame is enough
+  options.depth.noise.quadratic = 0.0;
   MeshFusion fusion(options);
   constexpr double kDepth = 3.9;
   Frame wall;
@@ -162,17 +163,6 @@ TEST(MeshFusionTest, RefusesWhatMakesNoSense) {
   MeshFusionOptions options;
   options.voxel_size = 0.0;
   EXPECT_EQ(options.Check(), "the voxel size must be 0.001 to 1 m");
-  options = {};
-  options.truncation_voxels = 0.5;
-  EXPECT_NE(options.Check(), "");
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (double MeshFusionOptions::*field :
-       {&MeshFusionOptions::truncation_voxels,
-        &MeshFusionOptions::truncation_sigmas, &MeshFusionOptions::max_sigma}) {
-    options = {};
-    options.*field = kInfinity;
-    EXPECT_NE(options.Check(), "");
-  }
   options = {};
   options.depth.max_depth = options.max_depth = 1e9;
   EXPECT_NE(options.Check(), "");

@@ -7,22 +7,20 @@
 
 namespace rgbd_pose {
 
-// Big-endian bytes of a number, as used in PNG files.
-inline std::string PngNumber(uint32_t value) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    bytes.push_back(static_cast<char>(value >> shift & 0xFF));
-  }
-  return bytes;
-}
-
 // The start of a PNG file with one channel of `bits` bits, not interlaced, up
 // to the checksum of its header (PNG Specification, sections 5.2 and 11.2.2).
 inline std::string PngStart(int width, int height, int bits) {
-  constexpr uint32_t kHeaderSize = 13;
-  return "\x89PNG\r\n\x1A\n" + PngNumber(kHeaderSize) + "IHDR" +
-         PngNumber(width) + PngNumber(height) + static_cast<char>(bits) +
-         std::string(4, '\0');
+  std::string start = "\x89PNG\r\n\x1A\n";
+  const auto add = [&start](uint32_t number) {
+    for (int shift = 24; shift >= 0; shift -= 8) {
+      start.push_back(static_cast<char>(number >> shift & 0xFF));
+    }
+  };
+  add(13);  // size of the header
+  start += "IHDR";
+  add(width);
+  add(height);
+  return start + static_cast<char>(bits) + std::string(4, '\0');
 }
 
 // What a PNG file is decoded to.
@@ -48,9 +46,5 @@ struct DecodedPng {
 // above, if bytes of the rows are missing or invalid. (libpng would write to
 // stderr.) Thread-safe.
 DecodedPng DecodePng(std::string_view bytes, PngUse use);
-
-// Encodes a non-empty grey (CV_8UC1) or depth image (CV_16UC1) as a PNG file by
-// libdeflate, in about half the time of OpenCV. Thread-safe.
-std::string EncodePngByLibdeflate(const cv::Mat& image);
 
 }  // namespace rgbd_pose
