@@ -32,7 +32,7 @@ constexpr ceres::Ownership BlockOwnership(Assembly assembly) {
 
 // What a residual type over matches packs its columns from.
 struct CostInput {
-  const Correspondences& matches;
+  const Correspondences& matches;      // with the observations
   Rigid3d cur_from_prev;               // weights are frozen at this motion
   const MotionPrior* prior = nullptr;  // null: nothing is known
 };

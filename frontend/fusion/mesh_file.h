@@ -16,7 +16,7 @@ struct ColoredPoint {
 
 // A coloured surface.
 struct TriangleMesh {
-  std::vector<ColoredPoint> vertices;
+  std::vector<ColoredPoint> vertices;  // of the triangles
 
   // Indices into `vertices`, counter-clockwise as seen from the camera.
   std::vector<Eigen::Vector3i> triangles;

@@ -35,10 +35,10 @@ class CellCounts {
   int num_covered() const { return static_cast<int>((counts_ > 0).count()); }
 
   int& At(const Eigen::Vector2d& pixel) {
-    if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0)) return outside_;
+    if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0)) return outside_ = 0;
     const int row = static_cast<int>(pixel.y() / kCellPx);
     const int column = static_cast<int>(pixel.x() / kCellPx);
-    if (row >= counts_.rows() || column >= counts_.cols()) return outside_;
+    if (row >= counts_.rows() || column >= counts_.cols()) return outside_ = 0;
     return counts_(row, column);
   }
 
@@ -112,7 +112,7 @@ void FeatureValidation::Learn(const FeatureMatches& on_probation,
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
     const bool agrees = AgreesWithMotion(on_probation, i, cur_from_ref);
     int& needed = agreements_needed_[on_probation.features[i]];
-    needed = agrees ? needed - 1 : kAgreements;
+    needed = agrees ? std::max(0, needed - 1) : kAgreements;
   }
 }
 

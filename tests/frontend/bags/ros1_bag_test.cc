@@ -143,8 +143,9 @@ TEST_F(Ros1BagTest, ReadsUnfinishedBagsUpToTheirEnd) {
     std::memcpy(&index, whole.data() + place, sizeof(index));
     std::string unfinished = whole.substr(0, index);
     unfinished.replace(place, 8, std::string(8, '\0'));
-    int last = kFrames;
-    for (const double share : {1.0, 0.6}) {
+    // A packed recording as small as this one is a single chunk.
+    const bool has_chunks = compression == rosbag::compression::Uncompressed;
+    for (const double share : {1.0, has_chunks ? 0.6 : 1.0}) {
       folder_.Write("b.bag.active", unfinished.substr(0, share * index));
       path_ = folder_ / "b.bag.active";
       const auto source = Source();
@@ -154,12 +155,11 @@ TEST_F(Ros1BagTest, ReadsUnfinishedBagsUpToTheirEnd) {
             while (source->Next().has_value()) ++frames;
           },
           {"b.bag.active: ends without its index", "rosbag reindex"});
-      EXPECT_LE(frames, last);
+      EXPECT_LE(frames, share == 1.0 ? kFrames : kFrames - 1);
       EXPECT_GE(frames, share == 1.0 ? kFrames : 1);
       EXPECT_FALSE(source->Next().has_value());
-      last = kFrames - 1;
     }
-    folder_.Write("b.bag", unfinished.substr(0, place + 4000));
+    folder_.Write("b.bag", unfinished.substr(0, 4500));
     path_ = folder_ / "b.bag";
     ExpectRefused({"b.bag: ends before its first messages"});
   }

@@ -134,6 +134,28 @@ TEST_F(FeatureValidationTest, TrustIsEarnedByAgreeingSomeTimesInARow) {
   EXPECT_EQ(OnProbation(validation), (std::vector<int>{3}));
 }
 
+// After another motion was chosen, features may be on probation that are
+// trusted.
+TEST_F(FeatureValidationTest, AgreementDoesNotTakeTrustAway) {
+  FeatureValidation validation = Validation(true);
+  FeatureMatches agreeing{Correspondences(kKinect), {}};
+  agreeing.Add(fresh_, 0, fresh_.observations[0]);
+  for (int i = 0; i < 2; ++i) validation.Learn(agreeing, Rigid3d());
+  EXPECT_EQ(OnProbation(validation), (std::vector<int>{2, 3}));
+}
+
+// With a lens that compresses the border, ideal pixels lie beyond the image.
+TEST_F(FeatureValidationTest, FailuresOutsideTheImageSayNothing) {
+  for (int k = 0; k < 3; ++k) {
+    const int i = static_cast<int>(last_.observations.size());
+    last_.observations.push_back(At(700 + 20 * k, 100));
+    found_.Add(last_, i, At(720 + 20 * k, 100));
+    estimate_.is_inlier.push_back(false);
+  }
+  fresh_.observations.push_back(At(-80, 300));
+  EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 3u);
+}
+
 TEST_F(FeatureValidationTest, AgreementIsWithTheMotion) {
   FeatureValidation validation = Validation(true);
   // 2 cm to the left at 2 m: 5.25 px.
