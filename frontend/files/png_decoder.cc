@@ -1,5 +1,7 @@
 // W3C, Portable Network Graphics (PNG) Specification, second edition, 2003.
 
+#include "frontend/files/png_decoder.h"
+
 #include <libdeflate.h>
 
 #include <cstdlib>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "frontend/files/image_file.h"
-#include "frontend/files/png_decoder.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,10 +1,10 @@
+#include "apps/compare/compare_sequence.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
-
-#include "apps/compare/compare_sequence.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,3 +1,5 @@
+#include "frontend/files/png_decoder.h"
+
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -6,7 +8,6 @@
 #include <vector>
 
 #include "core/util/text_file.h"
-#include "frontend/files/png_decoder.h"
 #include "tests/support/png_parts.h"
 #include "tests/support/temp_folder.h"
 
