@@ -115,8 +115,9 @@ class BagDatabase final : public BagReader {
 
   Messages MessagesOf(const std::vector<std::string>& topics) override {
     std::vector<std::string> ids;
-    for (const int64_t id : NumbersOf(topics))
+    for (const int64_t id : NumbersOf(topics)) {
       ids.push_back(std::to_string(id));
+    }
     // The plus makes sqlite3 go through the messages by time, not by topic.
     const auto rows = std::make_shared<Rows>(
         path_, database_.get(),

@@ -52,7 +52,8 @@ class BagReader {
   // must not be called again. The reader must outlive it.
   using Messages = std::function<std::optional<BagMessage>()>;
 
-  // The messages of these topics in the order of reception.
+  // The messages of these topics in the order of reception. Where a recording
+  // was not finished, its end is an InputError after the last message.
   virtual Messages MessagesOf(const std::vector<std::string>& topics) = 0;
 
   // The first messages of a topic, at most `count`.
@@ -117,9 +118,8 @@ enum class BagKind { kRos1, kRos2 };
 // folder with the files of one recording.
 bool IsBag(const std::string& path, BagKind kind);
 
-// Opens a bag. Throws InputError if the path is not a bag, if a file was not
-// closed, if the files are of several recordings or cameras, and for .db3 in a
-// build without sqlite3.
+// Opens a bag. Throws InputError if the path is not a bag, if the files are of
+// several recordings or cameras, and for .db3 in a build without sqlite3.
 std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind);
 
 // Open one file. Throw InputError if it is not of this kind. Of an mcap file

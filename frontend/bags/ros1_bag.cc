@@ -146,17 +146,18 @@ class Ros1Bag final : public BagReader {
   // Reads a file without an index: after each chunk follow the times of its
   // messages; connections are in the chunk of their first message.
   void ReadChunks() {
-    ReadBlock();  // the space for the index' place
+    ReadBlock();  // padding of the bag's header
     while (static_cast<uint64_t>(file_.tellg()) < size_) {
       const auto place = static_cast<uint64_t>(file_.tellg());
       std::string header, data;
+      uint8_t op = 0;
       try {
         header = ReadBlock();
         data = ReadBlock();
+        op = NumberField<uint8_t>(header, "op");
       } catch (const InputError&) {
-        break;  // cut off within this record
+        break;  // cut off within this record, or filled with zeros from here
       }
-      const auto op = NumberField<uint8_t>(header, "op");
       if (op == kChunk) chunks_.push_back({place, UINT64_MAX, {}});
       if (op != kIndexData || chunks_.empty()) continue;
       Chunk& chunk = chunks_.back();
@@ -169,7 +170,7 @@ class Ros1Bag final : public BagReader {
       if (names_.count(chunk.connections.back()) > 0) continue;
       const std::streampos next = file_.tellg();
       Load(chunk);
-      loaded_ = nullptr;  // as chunks_ moves
+      loaded_ = nullptr;  // more chunks will move this one in memory
       WireReader records(records_);
       while (!records.rest().empty()) {
         const std::string_view of = records.Bytes();
