@@ -6,6 +6,7 @@
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
 #include "frontend/frame/observe.h"
+#include "frontend/tracking/correlated_errors.h"
 #include "frontend/tracking/twist_estimation.h"
 
 namespace rgbd_pose {
@@ -134,6 +135,9 @@ void FeatureTracker::Track(const Reference& reference,
     const Rigid3d found = tracked->estimate.cur_from_prev;
     track(frame.WithTwist(tracked->twist), found, found);
   }
+  tracked->covariance_factor =
+      CovarianceInflation(tracked->matches.matches, tracked->estimate);
+  tracked->estimate.covariance *= tracked->covariance_factor;
   tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;

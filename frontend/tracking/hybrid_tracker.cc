@@ -127,6 +127,7 @@ bool HybridTracker::RefineByPixels(const Reference& direct,
   direct_->RefineWithMatches(direct, WithVelocity(frame, *tracked), *tracked,
                              &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
+  pixels_.estimate.covariance *= tracked->covariance_factor;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
   if (pixels_.status != TrackingStatus::kOk ||

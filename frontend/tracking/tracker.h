@@ -112,6 +112,7 @@ struct TrackingResult {
     needs_refinement = false;
     twist.reset();
     twist_covariance.setZero();
+    covariance_factor = 1.0;
     matches.Clear();
     on_probation.Clear();
   }
@@ -131,6 +132,9 @@ struct TrackingResult {
 
   // The part of the motion's covariance due to the uncertainty of `twist`.
   MotionMatrix twist_covariance = MotionMatrix::Zero();
+
+  // The covariance was multiplied by this (see CovarianceInflation).
+  double covariance_factor = 1.0;
 
   // So little of the reference was found that the next frames need another one,
   // whatever the share in `overlap`.

@@ -192,9 +192,9 @@ SyntheticOptions RollingShutters() {
 }
 
 TEST(CalibrationTest, FindsShuttersAndClocks) {
+  // Fewer frames leave too few held-out pairs for the delay.
   const CalibrationResult result =
-      Mapped(Render("handheld", kCalibrationFrames, RollingShutters()), {})
-          .Calibrate();
+      Mapped(Render("handheld", 60, RollingShutters()), {}).Calibrate();
   EXPECT_TRUE(result.is_accepted) << result.reason;
   EXPECT_NEAR(result.camera.color_shutter.readout, 0.028, 3e-3);
   EXPECT_NEAR(result.camera.depth_shutter.readout, 0.022, 3e-3);
