@@ -12,10 +12,12 @@ namespace {
 // errors that both share count twice there and calibration errors not at all.
 constexpr double kMaxDifference = 8.0;
 
-bool Agree(const MotionEstimate& features, const MotionEstimate& pixels) {
-  return SquaredMahalanobisDistance(pixels.cur_from_prev,
-                                    features.cur_from_prev,
-                                    features.covariance + pixels.covariance) <=
+bool Agree(const TrackingResult& tracked, const MotionEstimate& pixels) {
+  const MotionEstimate& features = tracked.estimate;
+  return SquaredMahalanobisDistance(
+             pixels.cur_from_prev, features.cur_from_prev,
+             features.covariance / tracked.covariance_factor +
+                 pixels.covariance) <=
          6.0 * kMaxDifference * kMaxDifference;  // false for NaN
 }
 
@@ -127,16 +129,16 @@ bool HybridTracker::RefineByPixels(const Reference& direct,
   direct_->RefineWithMatches(direct, WithVelocity(frame, *tracked), *tracked,
                              &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
-  pixels_.estimate.covariance *= tracked->covariance_factor;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
   if (pixels_.status != TrackingStatus::kOk ||
-      !Agree(tracked->estimate, pixels_.estimate)) {
+      !Agree(*tracked, pixels_.estimate)) {
     return false;
   }
   tracked->source = TrackingSource::kBoth;
   tracked->estimate.cur_from_prev = pixels_.estimate.cur_from_prev;
-  tracked->estimate.covariance = pixels_.estimate.covariance;
+  tracked->estimate.covariance =
+      tracked->covariance_factor * pixels_.estimate.covariance;
   // A reference with few features is judged by the overlap of its pixels.
   if (tracked->needs_new_keyframe) {
     tracked->needs_new_keyframe = false;
@@ -150,7 +152,7 @@ void HybridTracker::Confirm(const Reference& direct, const PreparedFrame& frame,
                             TrackingResult* tracked) {
   direct_->Track(direct, WithVelocity(frame, *tracked), guess, &alone_);
   if (alone_.status != TrackingStatus::kOk) return;
-  if (Agree(tracked->estimate, alone_.estimate)) {
+  if (Agree(*tracked, alone_.estimate)) {
     tracked->status = TrackingStatus::kOk;
     tracked->reason.clear();
     if (is_refined) return;
