@@ -37,8 +37,8 @@ Consistency Measure(double independent, double shared) {
     for (int i = 0; i < 300; ++i) {
       Observation prev, cur;
       world.Match(camera, motion, &prev, &cur);
-      const int cell = static_cast<int>(cur.v / 80.0) * 8 +
-                       static_cast<int>(cur.u / 80.0);
+      const int cell =
+          static_cast<int>(cur.v / 80.0) * 8 + static_cast<int>(cur.u / 80.0);
       if (!camera.Contains({cur.u, cur.v})) continue;
       cur.u += offsets[cell].x() + world.Normal(independent * cur.sigma_px);
       cur.v += offsets[cell].y() + world.Normal(independent * cur.sigma_px);
