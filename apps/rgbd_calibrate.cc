@@ -8,7 +8,11 @@
 #include "apps/calibration/calibration_run.h"
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
+#include "apps/results/run_folder.h"
 #include "apps/shell/program.h"
+#include "core/util/format.h"
+#include "frontend/files/camera_file.h"
+#include "frontend/files/depth_noise_file.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
 DEFINE_bool(report, true, "write OUTPUT/report.html");
@@ -35,6 +39,15 @@ ProgramInfo Info(ProgramSettings* settings) {
        SettingTable(&settings->slam), SettingTable(&settings->calibration)}};
 }
 
+std::string FormatResiduals(const CalibrationResult& result) {
+  std::string text = "u,v,before_u,before_v,after_u,after_v\n";
+  for (const HeldOutResidual& r : result.residuals) {
+    text += Format("%.2f,%.2f,%.4f,%.4f,%.4f,%.4f\n", r.u, r.v, r.before.x(),
+                   r.before.y(), r.after.x(), r.after.y());
+  }
+  return text;
+}
+
 int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", FLAGS_output);
@@ -49,8 +62,20 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                             settings.calibration, threads);
   const CalibrationResult& result = calibration.result;
   const double seconds = SecondsSince(start);
-  WriteCalibration(calibration, settings.sequence.camera, FormatFlagFile(info),
-                   seconds, folder);
+  folder.WriteFile("camera.yaml",
+                   FormatCameraFile(result.camera, settings.sequence.camera));
+  if (result.noise.has_value()) {
+    folder.WriteFile("depth_noise.yaml",
+                     FormatDepthNoiseFile(result.noise->model));
+  }
+  folder.WriteFile("residuals.csv", FormatResiduals(result));
+  folder.WriteFile("config.flags", FormatFlagFile(info));
+  const nlohmann::json metrics = {{"program", info.name},
+                                  {"seconds", seconds},
+                                  {"stopped", calibration.stopped},
+                                  {"damaged_frames", calibration.damaged},
+                                  {"calibration", CalibrationToJson(result)}};
+  folder.WriteFile("metrics.json", metrics.dump(2) + "\n");
   if (FLAGS_report) {
     folder.WriteFile("report.html", CalibrationPage(result, calibration.path));
   }

@@ -7,6 +7,7 @@
 #include "apps/pipeline/settings.h"
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
@@ -29,7 +30,7 @@ std::vector<Setting> Table(ExportSettings* settings) {
        &settings->dataset},
       {"camera", kInput, "camera file of the run, if it was moved",
        &settings->camera},
-      {"to", kOutput, "format", &settings->to, ExportFormatNames()},
+      {"to", kOutput, "format", &settings->to, NamesOf(ExportFormats())},
       {"output", kOutput,
        "file or folder to write; empty: a default name in the folder of the "
        "run",
@@ -76,7 +77,7 @@ int Main(const ExportSettings& settings, const ProgramInfo& /*info*/) {
   const auto& [folder, dataset, camera, to, given] = settings;
   RequireFlag("run", folder);
   RequireFlag("to", to);
-  const ExportFormat& format = FindExportFormat(to);
+  const ExportFormat& format = RowOf(ExportFormats(), "format", to);
   const FinishedRun run(folder, dataset, camera);
   ExportOptions options = given;
   // VoxelCloud::Thin needs at least 8 points.

@@ -91,8 +91,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   LiveView view(settings.sequence.dataset, source.camera().camera, run);
 
-  RunIssues flaws;
-  flaws.stopped =
+  const std::string stopped =
       TrackSource(&source, threads, &run, &output,
                   [&view](const Frame& frame, const StopSignal& signal) {
                     return view.Add(frame, signal);
@@ -100,20 +99,21 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const double seconds = SecondsSince(start);
 
   const RunResults results = run.Finish(sequence.GroundTruth());
-  LogWarnings(results);
-  std::string text = output.Write(
-      results, threads, seconds, sequence.GroundTruth(),
-      settings.sequence.dataset, info, {{"stopped", flaws.stopped}});
+  std::string text =
+      output.Write(results, threads, seconds, sequence.GroundTruth(),
+                   settings.sequence.dataset, info, {{"stopped", stopped}});
+  std::string no_report;
   if (FLAGS_report) {
     text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
-                         &flaws.no_report);
+                         &no_report);
   }
   output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
   view.Finish(settings.output.output);
-  return ExitCodeOf(info.name, results, settings.output.output, flaws);
+  return ExitCodeOf(info.name, results, settings.output.output, stopped,
+                    no_report);
 }
 
 }  // namespace

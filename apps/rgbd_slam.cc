@@ -155,8 +155,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   LiveView view(settings.sequence.dataset, source.camera().camera, run);
 
-  RunIssues flaws;
-  flaws.stopped =
+  const std::string stopped =
       TrackSource(&source, threads, &run, &output,
                   [&view](const Frame& frame, const StopSignal& signal) {
                     return view.Add(frame, signal);
@@ -165,17 +164,16 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   const RunResults results = run.Finish(sequence.GroundTruth());
   const Slam& slam = *run.slam();
-  LogWarnings(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
-  Warn({SlamWarning(map_json)});
   std::string text;
-  nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
+  nlohmann::json more = {{"stopped", stopped}, {"slam", map_json}};
   if (found.has_value()) {
     text = WriteFound(*found, settings, output.folder());
     more["calibration"] = CalibrationToJson(found->result);
   }
   text += output.Write(results, threads, seconds, sequence.GroundTruth(),
                        settings.sequence.dataset, info, more);
+  Warn({SlamWarning(map_json)});
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
   output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
@@ -187,9 +185,10 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                             FormatKeyframesCsv(map, slam.Covariances()));
   output.folder().WriteFile("graph.g2o",
                             FormatG2o(slam.Map(/*as_solved=*/true)));
+  std::string no_report;
   if (FLAGS_report) {
     text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
-                         &flaws.no_report);
+                         &no_report);
   }
   output.folder().Publish();
   text += SaveMesh(settings.output, threads);
@@ -201,7 +200,8 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
   view.Finish(settings.output.output);
-  return ExitCodeOf(info.name, results, settings.output.output, flaws);
+  return ExitCodeOf(info.name, results, settings.output.output, stopped,
+                    no_report);
 }
 
 }  // namespace

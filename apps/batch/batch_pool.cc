@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "apps/batch/batch_runs.h"
+#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
@@ -35,20 +36,14 @@ constexpr int kCannotRun = 127;  // as in shells
   _exit(kCannotRun);
 }
 
-using Clock = std::chrono::steady_clock;
-
 // Short compared with a run, long compared with the cost of polling.
 constexpr auto kLookEvery = std::chrono::milliseconds(10);
 
 struct Process {
   const BatchRun* run;
   pid_t id;
-  Clock::time_point start;
+  std::chrono::steady_clock::time_point start;
   bool timed_out = false;
-
-  double Seconds() const {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  }
 };
 
 // A run works in its own folder and refers to it as ".". Its files therefore do
@@ -107,7 +102,7 @@ void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
       processes.push_back(
           {&*next,
            StartProcess(CommandOf(*next, options), folder.Partial(*next)),
-           Clock::now()});
+           std::chrono::steady_clock::now()});
       ++next;
     }
     std::vector<Process> running;
@@ -116,11 +111,11 @@ void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
       if (waitpid(process.id, &state, WNOHANG) == process.id) {
         const RunEnd end = EndOf(process, state);
         folder.Finish(*process.run, end);
-        options.on_end(*process.run, end, process.Seconds());
+        options.on_end(*process.run, end, SecondsSince(process.start));
         continue;
       }
       if (options.timeout_seconds > 0.0 && !process.timed_out &&
-          process.Seconds() > options.timeout_seconds) {
+          SecondsSince(process.start) > options.timeout_seconds) {
         kill(process.id, SIGKILL);
         process.timed_out = true;
       }

@@ -90,9 +90,6 @@ using BatchSummary = std::vector<nlohmann::ordered_json>;
 BatchSummary Summarise(const std::vector<BatchRun>& runs,
                        const BatchFolder& folder);
 
-// The number of rows whose status is not "ok".
-int CountNotOk(const BatchSummary& summary);
-
 // For programs: CSV with a header and one row per run; a JSON array of objects.
 std::string FormatBatchCsv(const BatchSummary& summary);
 std::string FormatBatchJson(const BatchSummary& summary);

@@ -171,12 +171,6 @@ BatchSummary Summarise(const std::vector<BatchRun>& runs,
   return summary;
 }
 
-int CountNotOk(const BatchSummary& summary) {
-  return static_cast<int>(
-      std::count_if(summary.begin(), summary.end(),
-                    [](const auto& row) { return row["status"] != "ok"; }));
-}
-
 std::string FormatBatchCsv(const BatchSummary& summary) {
   std::string text = "sequence";
   for (const BatchSetting& setting : BatchSettings()) {

@@ -6,7 +6,6 @@
 #include "core/evaluation/association.h"
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
-#include "core/util/text_file.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {
@@ -213,14 +212,6 @@ std::string PathErrorTable(const std::vector<LossRun>& runs) {
     text += TableRow(run.loss, errors, {3, 3, 4, 3, 4, 1});
   }
   return text;
-}
-
-std::string TrackedLine(const std::vector<LossRun>& runs) {
-  std::vector<std::string> shares;
-  for (const LossRun& run : runs) {
-    shares.push_back(run.loss + Format(" %.1f", run.TrackedShare() * 100.0));
-  }
-  return "Frames tracked (%): " + Join(shares) + ".\n";
 }
 
 std::string SequenceCsvRows(const std::string& name,

@@ -24,9 +24,6 @@ std::string EndPoseTable(const std::vector<LossRun>& runs,
 // Errors along the path, as in the thesis' Tables 4.7 and 4.8; n/a if unknown.
 std::string PathErrorTable(const std::vector<LossRun>& runs);
 
-// The share of tracked frames of each run. Used when there are no errors.
-std::string TrackedLine(const std::vector<LossRun>& runs);
-
 // tables.csv: one row per loss with `name` (of the sequence), the loss and the
 // figures of both tables; unknown figures are empty cells.
 std::string SequenceCsvRows(const std::string& name,

@@ -9,6 +9,7 @@
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
+#include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
@@ -49,6 +50,11 @@ class SequenceExperiment {
            bool returns_to_start) {
     PrepareOutput(output_);
     const std::vector<LossRun> runs = Track(source, truth);
+    std::vector<std::string> shares;
+    for (const LossRun& run : runs) {
+      shares.push_back(run.loss + Format(" %.1f", run.TrackedShare() * 100.0));
+      any_tracked_ |= run.TrackedShare() >= kMinTrackedShare;
+    }
     report_ += "## " + title + "\n\n";
     if (returns_to_start) {
       report_ +=
@@ -65,16 +71,14 @@ class SequenceExperiment {
       report_ +=
           "There is no groundtruth.txt, so errors are unknown. Last pose "
           "relative to the first:\n\n" +
-          EndPoseTable(runs, returns_to_start) + "\n" + TrackedLine(runs);
+          EndPoseTable(runs, returns_to_start) +
+          "\nFrames tracked (%): " + Join(shares) + ".\n";
     }
     report_ += "\n![Top views of the paths](" + figure + ")\n\n";
     tables_ += SequenceCsvRows(title, runs);
     const std::vector<ComparedPath> paths = ComparePaths(runs, truth);
     paths_ += ComparedPathsCsvRows(title, paths);
     WriteOutput(output_, figure, PathFigure(title, paths));
-    for (const LossRun& run : runs) {
-      any_tracked_ |= run.TrackedShare() >= kMinTrackedShare;
-    }
   }
 
   ExperimentResult Finish() const {
@@ -87,7 +91,6 @@ class SequenceExperiment {
   // Tracks a sequence with all losses and otherwise equal settings.
   std::vector<LossRun> Track(FrameSource* source,
                              const std::optional<Trajectory>& truth) const {
-    if (truth.has_value()) RequireOverlap(*source, *truth);
     OdometrySettings settings = settings_.odometry;
     std::vector<SequenceRun> runs;
     for (const std::string& loss : losses_) {

@@ -3,24 +3,12 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/util/format.h"
-#include "core/util/named_values.h"
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/undistorter.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr ExportFormat kFormats[] = {
-    {"mesh", "mesh.ply", ExportMesh},
-    {"cloud", "cloud.ply", ExportCloud},
-    {"colmap", "colmap", ExportColmap},
-    {"nerfstudio", "nerfstudio", ExportNerfstudio},
-    {"mcap", "run.mcap", ExportMcap},
-    {"kitti", "kitti", ExportKitti},
-    {"tum", "trajectory_tum.txt", ExportTum},
-    {"g2o", "poses.g2o", ExportG2o},
-};
 
 // Colour images are large, and strong compression would take most of the time.
 const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
@@ -34,10 +22,18 @@ cv::Mat InMillimetres(const Frame& frame) {
 
 }  // namespace
 
-std::vector<std::string> ExportFormatNames() { return NamesOf(kFormats); }
-
-const ExportFormat& FindExportFormat(const std::string& name) {
-  return RowOf(kFormats, "format", name);
+const std::vector<ExportFormat>& ExportFormats() {
+  static const std::vector<ExportFormat> formats = {
+      {"mesh", "mesh.ply", ExportMesh},
+      {"cloud", "cloud.ply", ExportCloud},
+      {"colmap", "colmap", ExportColmap},
+      {"nerfstudio", "nerfstudio", ExportNerfstudio},
+      {"mcap", "run.mcap", ExportMcap},
+      {"kitti", "kitti", ExportKitti},
+      {"tum", "trajectory_tum.txt", ExportTum},
+      {"g2o", "poses.g2o", ExportG2o},
+  };
+  return formats;
 }
 
 ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,

@@ -92,10 +92,7 @@ void RequireMeshFrames(const RunOutputSettings& settings,
 // text that the program prints.
 std::string SaveMesh(const RunOutputSettings& settings, int threads);
 
-std::vector<std::string> ExportFormatNames();
-
-// Returns the format of that name. Throws InputError with the list of names.
-const ExportFormat& FindExportFormat(const std::string& name);
+const std::vector<ExportFormat>& ExportFormats();
 
 // Opens the recording of a run to read its frames again, with colour. Throws
 // InputError if it is missing or broken.

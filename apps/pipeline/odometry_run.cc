@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
@@ -58,13 +57,6 @@ std::string TrackAll(FrameSource* source, int threads,
   }
   for (SequenceRun* run : runs) run->set_damaged(stream.damaged());
   return stream.stopped();
-}
-
-void RequireOverlap(const FrameSource& source, const Trajectory& truth) {
-  Trajectory frames;
-  for (const double time : source.timestamps()) frames.push_back({time, {}});
-  if (frames.empty()) return;
-  PairPoses(frames, truth, EvaluationOptions().max_time_difference);
 }
 
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,

@@ -129,10 +129,6 @@ std::string TrackAll(FrameSource* source, int threads,
                      const std::vector<SequenceRun*>& runs,
                      const std::function<bool(const Frame& frame)>& on_frame);
 
-// Throws InputError if no frame of the source is near in time to the ground
-// truth. The check is skipped if the timestamps are not known in advance.
-void RequireOverlap(const FrameSource& source, const Trajectory& truth);
-
 // Judges the motions of tracked frames and their covariances against the truth.
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
                            const Trajectory& truth,

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
@@ -36,7 +37,8 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   return options;
 }
 
-// Reads the ground truth if it is available before the frames.
+// Reads the ground truth if it is available before the frames. Throws
+// InputError if no frame, as far as they are known, is near it in time.
 void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
   try {
     if (!settings.groundtruth.empty()) {
@@ -46,8 +48,13 @@ void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
       Trajectory truth = sequence->source->ground_truth();
       if (!truth.empty()) sequence->ground_truth = std::move(truth);
     }
-    if (sequence->ground_truth.has_value()) {
-      RequireOverlap(*sequence->source, *sequence->ground_truth);
+    Trajectory frames;
+    for (const double time : sequence->source->timestamps()) {
+      frames.push_back({time, {}});
+    }
+    if (sequence->ground_truth.has_value() && !frames.empty()) {
+      PairPoses(frames, *sequence->ground_truth,
+                EvaluationOptions().max_time_difference);
     }
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) +

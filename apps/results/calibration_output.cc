@@ -7,22 +7,11 @@
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
-#include "frontend/files/camera_file.h"
-#include "frontend/files/depth_noise_file.h"
 
 namespace rgbd_pose {
 namespace {
 
 using Status = CalibratedParameter::Status;
-
-std::string FormatResiduals(const CalibrationResult& result) {
-  std::string text = "u,v,before_u,before_v,after_u,after_v\n";
-  for (const HeldOutResidual& r : result.residuals) {
-    text += Format("%.2f,%.2f,%.4f,%.4f,%.4f,%.4f\n", r.u, r.v, r.before.x(),
-                   r.before.y(), r.after.x(), r.after.y());
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -175,25 +164,6 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
           {"halves_spread", result.halves_spread},
           {"displacement_px", result.displacement_px},
           {"passes", result.passes}};
-}
-
-void WriteCalibration(const RecordingCalibration& calibration,
-                      const std::string& camera, const std::string& flags,
-                      double seconds, const RunFolder& folder) {
-  const CalibrationResult& result = calibration.result;
-  folder.WriteFile("camera.yaml", FormatCameraFile(result.camera, camera));
-  if (result.noise.has_value()) {
-    folder.WriteFile("depth_noise.yaml",
-                     FormatDepthNoiseFile(result.noise->model));
-  }
-  folder.WriteFile("residuals.csv", FormatResiduals(result));
-  folder.WriteFile("config.flags", flags);
-  nlohmann::json metrics = {{"program", "rgbd_calibrate"},
-                            {"seconds", seconds},
-                            {"stopped", calibration.stopped},
-                            {"damaged_frames", calibration.damaged},
-                            {"calibration", CalibrationToJson(result)}};
-  folder.WriteFile("metrics.json", metrics.dump(2) + "\n");
 }
 
 }  // namespace rgbd_pose

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "apps/calibration/calibration_run.h"
-#include "apps/results/run_folder.h"
 
 namespace rgbd_pose {
 
@@ -26,11 +25,5 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result);
 
 // The status of a parameter in words.
 const char* ToString(CalibratedParameter::Status status);
-
-// Writes all output files of rgbd_calibrate except the page. camera.yaml has
-// the layout of `camera` (file or preset of the first camera).
-void WriteCalibration(const RecordingCalibration& calibration,
-                      const std::string& camera, const std::string& flags,
-                      double seconds, const RunFolder& folder);
 
 }  // namespace rgbd_pose

@@ -165,7 +165,11 @@ std::string RunOutput::Write(const RunResults& results, int threads,
       {"residuals", ResidualsToJson(results.residuals)}};
   metrics.update(more);
   Rigid3d shown_from_world;
+  if (!results.no_evaluation.empty()) {
+    Warn({"no evaluation: " + results.no_evaluation});
+  }
   if (results.evaluation.has_value()) {
+    Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
     text += FormatEvaluation(*results.evaluation);
     metrics["evaluation"] = EvaluationToJson(*results.evaluation);
     shown_from_world = results.evaluation->truth_from_estimate;

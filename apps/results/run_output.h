@@ -43,7 +43,8 @@ class RunOutput {
   // The folder of the files; callers may add further files.
   RunFolder& folder() { return folder_; }
 
-  // Writes all files except the page. The flags go into config.flags;
+  // Writes all files except the page, and warns of what the errors of the run
+  // suggest about its input. The flags go into config.flags;
   // `dataset`, the program's name and `more` (an object) go into metrics.json.
   // `seconds` is the time of the whole program up to the last frame, with
   // `threads` threads. `truth` may be null. Returns the text to print.
@@ -76,12 +77,6 @@ class StopSignal {
   std::string name() const;
 };
 
-// Problems that make a run incomplete although it has results.
-struct RunIssues {
-  std::string stopped;    // why it ended before the last frame
-  std::string no_report;  // why there is no page
-};
-
 // Called for each tracked frame. Returns why the run is to end, or an empty
 // string. A watcher that waits must check the signal.
 using FrameWatcher =
@@ -94,12 +89,11 @@ using FrameWatcher =
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                         RunOutput* output, const FrameWatcher& watcher = {});
 
-// Logs what the errors of a run suggest about its input.
-void LogWarnings(const RunResults& results);
-
 // Returns the exit code after everything is written, and prints one line on
-// stderr unless it is kExitOk.
+// stderr unless it is kExitOk. `stopped`: why the run ended before the last
+// frame; `no_report`: why there is no page; both may be empty.
 int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const RunIssues& flaws);
+               const std::string& folder, const std::string& stopped,
+               const std::string& no_report);
 
 }  // namespace rgbd_pose

@@ -51,19 +51,12 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
   return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
 }
 
-void LogWarnings(const RunResults& results) {
-  if (!results.no_evaluation.empty()) {
-    Warn({"no evaluation: " + results.no_evaluation});
-  }
-  if (!results.evaluation.has_value()) return;
-  Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
-}
-
 int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const RunIssues& flaws) {
-  if (!flaws.no_report.empty()) {
+               const std::string& folder, const std::string& stopped,
+               const std::string& no_report) {
+  if (!no_report.empty()) {
     std::fprintf(stderr, "%s: %s; all other results are in %s\n",
-                 program.c_str(), flaws.no_report.c_str(), folder.c_str());
+                 program.c_str(), no_report.c_str(), folder.c_str());
     return kExitBadInput;
   }
   if (results.TrackedShare() < kMinTrackedShare) {
@@ -74,10 +67,10 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
                  folder.c_str());
     return kExitTrackingFailed;
   }
-  if (!flaws.stopped.empty()) {
+  if (!stopped.empty()) {
     std::fprintf(stderr,
                  "%s: stopped after %zu frames (%s); their results are in %s\n",
-                 program.c_str(), results.frames.size(), flaws.stopped.c_str(),
+                 program.c_str(), results.frames.size(), stopped.c_str(),
                  folder.c_str());
     return kExitStopped;
   }
