@@ -1,6 +1,5 @@
 #include "apps/calibration/calibration.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -224,7 +224,6 @@ std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
                 " errors with their 95 % bands, from identity";
   chart.panel_width_px = 330;
   chart.panel_height_px = 420;
-  chart.same_ranges = true;
   chart.label_lines = true;
   for (const char* schedule : {"gnc", "direct"}) {
     ChartPanel panel = {

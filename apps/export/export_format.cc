@@ -1,6 +1,7 @@
 #include "apps/export/export_format.h"
 
 #include <opencv2/imgcodecs.hpp>
+#include <system_error>
 
 #include "core/util/format.h"
 #include "core/util/units.h"
@@ -10,6 +11,8 @@
 namespace rgbd_pose {
 namespace {
 
+namespace fs = std::filesystem;
+
 // Colour images are large, and strong compression would take most of the time.
 const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
 
@@ -18,6 +21,12 @@ cv::Mat InMillimetres(const Frame& frame) {
   depth.setTo(0, frame.depth == Frame::kNoDepth);
   depth.convertTo(depth, CV_16UC1, kMillimetresPerMetre / frame.depth_scale);
   return depth;
+}
+
+[[noreturn]] void FailToWrite(const fs::path& path,
+                              const std::error_code& error) {
+  throw InputError("--output: " + path.string() + " cannot be created (" +
+                   error.message() + ")");
 }
 
 }  // namespace
@@ -58,8 +67,8 @@ std::string ImageName(const FinishedRun& run, int view) {
 
 ExportedViews WriteViewImages(const FinishedRun& run,
                               const ExportOptions& options,
-                              const std::filesystem::path& color_folder,
-                              const std::filesystem::path& depth_folder) {
+                              const fs::path& color_folder,
+                              const fs::path& depth_folder) {
   return ReadImages(run, options, [&](const Frame& frame, int view) {
     const std::string name = ImageName(run, view);
     WritePngFile(color_folder / name, frame.color, kQuick);
@@ -67,6 +76,50 @@ ExportedViews WriteViewImages(const FinishedRun& run,
       WritePngFile(depth_folder / name, InMillimetres(frame));
     }
   });
+}
+
+OutputFolder::OutputFolder(const std::string& path,
+                           const std::set<std::string>& entries, bool overwrite)
+    : path_(fs::absolute(path).lexically_normal()) {
+  if (!path_.has_filename()) path_ = path_.parent_path();
+  staging_dir_ = path_.string() + ".partial";
+  std::error_code error;
+  if (fs::exists(path_) && !fs::is_directory(path_)) {
+    throw InputError("--output: " + path + " is a file; a folder is needed");
+  }
+  if (!overwrite && fs::is_directory(path_) && !fs::is_empty(path_)) {
+    throw InputError("--output: " + path +
+                     " is not empty; use --overwrite to replace it");
+  }
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename();
+    if (entries.count(name) == 0) {
+      throw InputError("--output: " + path + " contains other files, such as " +
+                       name + "; choose another folder");
+    }
+  }
+  fs::remove_all(staging_dir_, error);  // left by a killed export
+  fs::create_directories(staging_dir_, error);
+  if (error) FailToWrite(path, error);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  fs::remove_all(staging_dir_, ignored);
+}
+
+fs::path OutputFolder::MakeFolder(const std::string& name) const {
+  std::error_code error;
+  fs::create_directories(staging_dir_ / name, error);
+  if (error) FailToWrite(staging_dir_ / name, error);
+  return staging_dir_ / name;
+}
+
+void OutputFolder::Publish() {
+  std::error_code error;
+  fs::remove_all(path_, error);
+  fs::rename(staging_dir_, path_, error);
+  if (error) FailToWrite(path_, error);
 }
 
 }  // namespace rgbd_pose

@@ -148,7 +148,7 @@ class Drawing {
     for (const ChartPanel& other : chart_.panels) {
       if (other.is_map == panel.is_map) alike.push_back(other);
     }
-    ranges_ = RangesOf(panel.is_map || !chart_.same_ranges
+    ranges_ = RangesOf(panel.is_map || !chart_.label_lines
                            ? std::vector<ChartPanel>{panel}
                            : alike);
     if (!panel.is_map) return;

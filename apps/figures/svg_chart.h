@@ -44,13 +44,12 @@ struct ChartPanel {
 };
 
 // Panels, two in a row, below a common legend (of the first panel), or with
-// labels at the ends of the lines.
+// labels at the ends of the lines and the same ranges in all panels.
 struct Chart {
   std::string title;
   std::vector<ChartPanel> panels;  // at least one
   int panel_width_px = 360;
   int panel_height_px = 360;
-  bool same_ranges = false;  // of all panels except maps
   bool label_lines = false;
 };
 

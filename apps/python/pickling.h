@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/util/input_error.h"
 #include "frontend/tracking/tracked_frame.h"

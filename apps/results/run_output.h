@@ -44,10 +44,10 @@ class RunOutput {
   RunFolder& folder() { return folder_; }
 
   // Writes all files except the page, and warns of what the errors of the run
-  // suggest about its input. The flags go into config.flags;
-  // `dataset`, the program's name and `more` (an object) go into metrics.json.
-  // `seconds` is the time of the whole program up to the last frame, with
-  // `threads` threads. `truth` may be null. Returns the text to print.
+  // suggest about its input. The flags go into config.flags; `dataset`, the
+  // program's name and `more` (an object) go into metrics.json. `seconds` is
+  // the time of the whole program up to the last frame, with `threads` threads.
+  // `truth` may be null. Returns the text to print.
   std::string Write(const RunResults& results, int threads, double seconds,
                     const Trajectory* truth, const std::string& dataset,
                     const ProgramInfo& info, const nlohmann::json& more);
