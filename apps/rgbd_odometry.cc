@@ -86,8 +86,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
   SequenceRun run(settings.odometry, source.camera().camera, sequence.inputs);
   RequireMeshFrames(settings.output, settings.sequence.dataset);
-  RunOutput output(settings.output, source,
-                   settings.odometry.features.DepthLookup());
+  RunOutput output(settings.output, source, settings.odometry.features.depth);
 
   LiveView view(settings.sequence.dataset, source.camera().camera, run);
 

@@ -150,8 +150,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                   sequence.inputs);
   LoadMaps(settings, run.slam());
   RequireMeshFrames(settings.output, settings.sequence.dataset);
-  RunOutput output(settings.output, source,
-                   settings.odometry.features.DepthLookup());
+  RunOutput output(settings.output, source, settings.odometry.features.depth);
 
   LiveView view(settings.sequence.dataset, source.camera().camera, run);
 

@@ -108,7 +108,7 @@ struct CalibrationSteps {
     Training().MeasureScales(&before);
     SolveWithScales(Training(), FreeParts{}, &before);
     result.noise =
-        FitDepthNoise(views_before, before, odometry.features.depth_noise);
+        FitDepthNoise(views_before, before, odometry.features.depth.noise);
   }
 
   // Higher lens coefficients are free only if held-out pairs gain enough.
@@ -246,7 +246,7 @@ struct CalibrationSteps {
     result.is_accepted = true;
     result.camera = result.found;
     result.noise =
-        FitDepthNoise(data.views, after, odometry.features.depth_noise);
+        FitDepthNoise(data.views, after, odometry.features.depth.noise);
   }
 };
 

@@ -77,7 +77,7 @@ class LandmarkMatcher {
     seen->u = pixel.x();
     seen->v = pixel.y();
     seen->depth =
-        MeasuredAt(frame, camera, o, pixel, frontend_->options().depth_noise);
+        MeasuredAt(frame, camera, o, pixel, frontend_->options().depth.noise);
   }
 
   // Decodes images once for consecutive neighbours.

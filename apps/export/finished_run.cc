@@ -88,7 +88,7 @@ FinishedRun::FinishedRun(const std::string& run_folder,
   Apply(flags, SettingTable(&sequence));
   OdometrySettings odometry;
   Apply(flags, SettingTable(&odometry));
-  depth = odometry.features.DepthLookup();
+  depth = odometry.features.depth;
   if (!dataset.empty()) sequence.dataset = dataset;
   if (!camera.empty()) sequence.camera = camera;
 

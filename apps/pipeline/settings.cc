@@ -117,8 +117,8 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
   FrontendOptions features = settings.features;
   features.camera = camera;
   DirectSettings direct = settings.direct;
-  direct.points.min_depth = features.min_depth;
-  direct.points.max_depth = features.max_depth;
+  direct.points.min_depth = features.depth.min_depth;
+  direct.points.max_depth = features.depth.max_depth;
   return MakeTracker(settings.tracker,
                      {settings.tracking, features, settings.frontend,
                       MakeEstimator(settings.estimator),
@@ -171,7 +171,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &options->max_standard_deviation},
       {"depth_noise", kEstimationGroup,
        "depth noise: a model, or a file written by rgbd_calibrate",
-       DepthNoiseByName(&features->depth_noise), NamesOf(DepthNoiseModels())},
+       DepthNoiseByName(&features->depth.noise), NamesOf(DepthNoiseModels())},
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),
        NamesOf(kAssemblies)},
@@ -180,9 +180,9 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
       {"max_features", kFeatures, "features wanted in a reference frame",
        &features->max_features},
       {"min_depth", kFeatures, "smaller depths (m) are ignored",
-       &features->min_depth},
+       &features->depth.min_depth},
       {"max_depth", kFeatures, "larger depths (m) are ignored",
-       &features->max_depth},
+       &features->depth.max_depth},
       {"tracker", kTracking,
        "how a frame is tracked: by features, pixels or both",
        &settings->tracker, TrackerNames()},

@@ -286,7 +286,7 @@ void BindFunction(py::module_* module, const char* name,
     const ReleasedGil no_gil;
     const RowMatches matches =
         MakeMatches(seen_by, to_observation, prev, cur, normals, sigma_px,
-                    settings.features.depth_noise);
+                    settings.features.depth.noise);
     if (guess != nullptr) {
       start = guess->find(matches.matches).value_or(start);
     }

@@ -38,7 +38,7 @@ class DescriptorFrontend final : public Frontend {
     const DescribedKeypoints& all = Keypoints(frame);
     auto features = std::make_unique<DescribedFeatures>();
     features->described = all.Select(SelectOverGrid(
-        all.keypoints, frame, options_.max_features, depth_options_));
+        all.keypoints, frame, options_.max_features, options_.depth));
     for (const cv::KeyPoint& keypoint : features->described.keypoints) {
       features->observations.push_back(ObserveKeypoint(frame, keypoint));
     }

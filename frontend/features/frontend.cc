@@ -25,15 +25,10 @@ constexpr Named<std::unique_ptr<Frontend> (*)(const FrontendOptions& options)>
 
 std::string FrontendOptions::Check() const {
   if (std::string error = camera.Check(); !error.empty()) return error;
-  const std::string noise_error = depth_noise.Check();
-  if (!noise_error.empty()) return "depth noise: " + noise_error;
   if (max_features < 3 || max_features > 1000000) {
     return "max_features must be 3 to 1000000";
   }
-  if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
-    return "depth limits must satisfy 0 < min_depth < max_depth";
-  }
-  return "";
+  return depth.Check();
 }
 
 std::vector<std::string> FrontendNames() { return NamesOf(kFrontends); }

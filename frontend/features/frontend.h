@@ -7,7 +7,6 @@
 
 #include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
-#include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/observe.h"
@@ -21,20 +20,10 @@ struct DescriptorMethod;
 struct FrontendOptions {
   Camera camera;  // of all frames
 
-  // The noise model of measured depths.
-  DepthNoiseModel depth_noise = *FindNamed(DepthNoiseModels(), "khoshelham");
+  DepthLookupOptions depth;  // which depths are used, and their noise
 
   // The number of features wanted in a reference frame.
   int max_features = 600;
-
-  // Depths outside these limits (m) are not used.
-  double min_depth = 0.3;
-  double max_depth = 8.0;
-
-  // The options of depth look-ups.
-  DepthLookupOptions DepthLookup() const {
-    return {depth_noise, min_depth, max_depth};
-  }
 
   // Returns one line that says what is wrong with the options, or empty.
   std::string Check() const;
@@ -77,8 +66,7 @@ struct FeatureMatches {
 class Frontend {
  public:
   // The options must be valid (see Check).
-  explicit Frontend(const FrontendOptions& options)
-      : options_(options), depth_options_(options.DepthLookup()) {}
+  explicit Frontend(const FrontendOptions& options) : options_(options) {}
   virtual ~Frontend() = default;
 
   // The options given to the constructor.
@@ -112,11 +100,10 @@ class Frontend {
   Observation ObserveAt(const Frame& frame, const cv::Point2f& point,
                         double sigma_px) const {
     return Observe(frame, options_.camera, point.x, point.y, sigma_px,
-                   depth_options_);
+                   options_.depth);
   }
 
-  const FrontendOptions options_;           // as given to the constructor
-  const DepthLookupOptions depth_options_;  // options_ for depth look-ups
+  const FrontendOptions options_;  // as given to the constructor
 };
 
 // Returns the names of all frontends.

@@ -101,7 +101,7 @@ class PatchFrontend final : public Frontend {
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override {
     auto features = std::make_unique<PatchFeatures>(frame);
     features->corners =
-        DetectGridCorners(frame, options_.max_features, depth_options_);
+        DetectGridCorners(frame, options_.max_features, options_.depth);
     for (const cv::Point2f& corner : features->corners) {
       features->observations.push_back(ObserveAt(frame, corner, kPatchSigmaPx));
     }
@@ -122,7 +122,7 @@ class PatchFrontend final : public Frontend {
     for (size_t i = 0; i < features.corners.size(); ++i) {
       const Observation& ref = features.observations[i];
       const Eigen::Vector3d point = cur_from_ref_guess * PointOf(ref);
-      if (!(point.z() >= options_.min_depth)) continue;
+      if (!(point.z() >= options_.depth.min_depth)) continue;
       const Eigen::Vector2d start = ImagePoint(camera, timing, point);
       if (!camera.Contains(start)) continue;
       const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref_guess);

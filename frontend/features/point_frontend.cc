@@ -48,7 +48,7 @@ void PointFrontend::Match(const FeatureSet& reference,
   for (size_t i = 0; i < moved.size(); ++i) {
     const Eigen::Vector3d point =
         cur_from_ref_guess * PointOf(features.observations[i]);
-    if (point.z() < options_.min_depth) continue;
+    if (point.z() < options_.depth.min_depth) continue;
     const Eigen::Vector2d pixel = ImagePoint(options_.camera, timing, point);
     moved[i] = cv::Point2d(pixel.x(), pixel.y());
   }
@@ -70,7 +70,7 @@ void PointFrontend::Match(const FeatureSet& reference,
 }
 
 void PointFrontend::Find(const Frame& frame, Points* points) {
-  *points = DetectGridCorners(frame, options_.max_features, depth_options_);
+  *points = DetectGridCorners(frame, options_.max_features, options_.depth);
 }
 
 }  // namespace rgbd_pose

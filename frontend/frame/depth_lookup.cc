@@ -21,6 +21,15 @@ constexpr double kMaxSlope = 0.011;
 
 }  // namespace
 
+std::string DepthLookupOptions::Check() const {
+  const std::string noise_error = noise.Check();
+  if (!noise_error.empty()) return "depth noise: " + noise_error;
+  if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
+    return "depth limits must satisfy 0 < min_depth < max_depth";
+  }
+  return "";
+}
+
 DepthSample LookUpDepth(const Frame& frame, double u, double v,
                         const DepthLookupOptions& options) {
   const int column = static_cast<int>(std::lround(u));

@@ -23,6 +23,9 @@ struct DepthLookupOptions {
 
   double min_depth = 0.3;  // m
   double max_depth = 8.0;  // m
+
+  // Returns one line that says what is wrong with the options, or empty.
+  std::string Check() const;
 };
 
 // The depth at an image point (px, distorted), never a mix of two surfaces. As

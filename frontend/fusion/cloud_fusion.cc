@@ -8,11 +8,7 @@ std::string FusionOptions::Check() const {
   if (!(voxel_size >= 0.001 && voxel_size <= 1.0)) {
     return "the voxel size must be 0.001 to 1 m";
   }
-  const std::string noise_error = depth.noise.Check();
-  if (!noise_error.empty()) return "depth noise: " + noise_error;
-  if (!(depth.min_depth > 0.0) || !(depth.max_depth > depth.min_depth)) {
-    return "depth limits must satisfy 0 < min_depth < max_depth";
-  }
+  if (std::string error = depth.Check(); !error.empty()) return error;
   return camera.Check();
 }
 

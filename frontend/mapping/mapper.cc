@@ -45,11 +45,12 @@ int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
   if (keyframe.images.gray == nullptr) keyframe.images = StoredImages(frame);
   if (keyframe.features == nullptr && options_.max_loop_candidates > 0) {
     keyframe.features = std::make_shared<const PlaceFeatures>(
-        DescribeKeyframe(frame, images.camera, images.DepthLookup()));
+        DescribeKeyframe(frame, images.camera, images.depth));
   }
-  keyframes_.push_back({std::move(keyframe), std::nullopt,
-                        ViewOverlap(frame, images.camera, kSampleStepPx,
-                                    images.min_depth, images.max_depth)});
+  keyframes_.push_back(
+      {std::move(keyframe), std::nullopt,
+       ViewOverlap(frame, images.camera, kSampleStepPx, images.depth.min_depth,
+                   images.depth.max_depth)});
   return at;
 }
 
@@ -127,7 +128,7 @@ Keyframe Mapper::WithImages(int at) const {
 
 std::optional<Keyframe> Mapper::Find(const PreparedFrame& lost) {
   const FrontendOptions& images = tracker_->images();
-  const Relocaliser relocaliser(images.camera, images.DepthLookup());
+  const Relocaliser relocaliser(images.camera, images.depth);
   const auto found = relocaliser.FindInMap(
       lost, index_, [this](int at) -> const PlaceFeatures& {
         return *keyframes_[at].features;

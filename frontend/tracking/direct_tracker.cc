@@ -46,9 +46,9 @@ struct DirectReference final : Reference {
                   uint64_t id)
       : depth(frame.depth),
         pyramid(frame.Derived<SmoothPyramid>().levels),
-        view(ViewFrame(frame, pyramid, images.camera, images.depth_noise)),
-        samples(frame, images.camera, kSampleStepPx, images.min_depth,
-                images.max_depth) {
+        view(ViewFrame(frame, pyramid, images.camera, images.depth.noise)),
+        samples(frame, images.camera, kSampleStepPx, images.depth.min_depth,
+                images.depth.max_depth) {
     view.id = id;
   }
 
@@ -159,7 +159,7 @@ void DirectTracker::Estimate(const Reference& reference,
                              Estimator* estimator,
                              MotionEstimate* estimate) const {
   FrameView view = ViewFrame(frame, frame.Derived<SmoothPyramid>().levels,
-                             images_.camera, images_.depth_noise);
+                             images_.camera, images_.depth.noise);
   FramePair pair;
   if (by_features != nullptr) {
     pair.matches = &by_features->matches.matches;

@@ -30,13 +30,12 @@ constexpr double kMinAgreeingViewOk = 0.45;
 void MoveAgain(const FeatureSet& features, const Frame& frame,
                const FrameTiming& moved_by, const FrontendOptions& images,
                FeatureMatches* found) {
-  const DepthLookupOptions depth = images.DepthLookup();
   const FeatureMatches before = *found;
   found->Clear();
   for (size_t i = 0; i < before.features.size(); ++i) {
     found->Add(features, before.features[i],
                ObserveAgain(frame, images.camera, moved_by,
-                            before.matches[i].cur, depth));
+                            before.matches[i].cur, images.depth));
   }
 }
 

@@ -61,7 +61,7 @@ class RunTrackingTest : public testing::Test {
     SequenceRun run(settings, source.camera().camera);
     RunOutputSettings files;
     files.output = folder_ / "run";
-    RunOutput output(files, source, settings.features.DepthLookup());
+    RunOutput output(files, source, settings.features.depth);
     std::string stopped = TrackSource(&source, 1, &run, &output);
     frames_ = static_cast<int>(run.frames().size());
     return stopped;

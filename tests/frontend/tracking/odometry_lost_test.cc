@@ -264,7 +264,7 @@ TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
       Eigen::Vector3d::Zero());
   const SyntheticDataset turned(options);
   FrontendOptions frontend{here.camera().camera};
-  frontend.max_depth = 100.0;
+  frontend.depth.max_depth = 100.0;
   Odometry odometry({}, MakeFrontend("patch", frontend),
                     {{}, MakeRobustCosts()});
   const auto larger = [](Frame frame) {
