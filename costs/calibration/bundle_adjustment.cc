@@ -14,9 +14,7 @@
 namespace rgbd_pose {
 
 CalibrationState BundleAdjustment::Begin(const CalibrationVector& theta) const {
-  CalibrationState state;
-  state.world_from_cam = views_.world_from_cam;
-  state.theta = theta;
+  CalibrationState state = {views_.world_from_cam, {}, theta};
   for (const Landmark& landmark : views_.landmarks) {
     state.inverse_depths.push_back(landmark.depth.value);
   }

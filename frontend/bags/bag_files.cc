@@ -83,11 +83,9 @@ std::vector<fs::path> FilesOf(const std::string& path, BagKind kind) {
 }
 
 std::unique_ptr<BagReader> OpenFile(const fs::path& file, BagKind kind) {
-  if (kind == BagKind::kRos2) {
-    return file.extension() == kMcap ? OpenMcapFile(file.string())
-                                     : OpenBagDatabase(file.string());
-  }
-  return OpenRos1Bag(file.string());
+  if (kind == BagKind::kRos1) return OpenRos1Bag(file.string());
+  return file.extension() == kMcap ? OpenMcapFile(file.string())
+                                   : OpenBagDatabase(file.string());
 }
 
 // Reads the files of a recording one after the other.

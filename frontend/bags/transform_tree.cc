@@ -4,12 +4,6 @@
 #include <limits>
 
 namespace rgbd_pose {
-namespace {
-
-// Allowed gap between two samples, s.
-constexpr double kAnyGap = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 void TransformTree::Add(const std::string& parent, const std::string& child,
                         double stamp, const Rigid3d& parent_from_child) {
@@ -59,6 +53,7 @@ std::optional<Rigid3d> TransformTree::Fixed(const std::string& target,
 
 Trajectory TransformTree::PathOf(const std::string& world,
                                  const std::string& frame) const {
+  constexpr double kAnyGap = std::numeric_limits<double>::infinity();  // s
   std::vector<const Edge*> edges;  // from the frame up to the world
   const Edge* most = nullptr;      // that moves, with most samples
   for (const std::string* at = &frame; *at != world;) {

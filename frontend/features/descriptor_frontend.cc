@@ -40,7 +40,8 @@ class DescriptorFrontend final : public Frontend {
     features->described = all.Select(SelectOverGrid(
         all.keypoints, frame, options_.max_features, options_.depth));
     for (const cv::KeyPoint& keypoint : features->described.keypoints) {
-      features->observations.push_back(ObserveKeypoint(frame, keypoint));
+      features->observations.push_back(
+          ObserveAt(frame, keypoint.pt, method_.SigmaPx(keypoint)));
     }
     return features;
   }
@@ -71,8 +72,9 @@ class DescriptorFrontend final : public Frontend {
       if (anywhere.size() > found.size()) found = std::move(anywhere);
     }
     for (const KeypointMatch& match : found) {
+      const cv::KeyPoint& keypoint = current.keypoints[match.current];
       matches->Add(reference, match.reference,
-                   ObserveKeypoint(frame, current.keypoints[match.current]));
+                   ObserveAt(frame, keypoint.pt, method_.SigmaPx(keypoint)));
     }
   }
 
@@ -80,11 +82,6 @@ class DescriptorFrontend final : public Frontend {
   const DescribedKeypoints& Keypoints(const PreparedFrame& frame) const {
     const int max_keypoints = kKeypointsPerFeature * options_.max_features;
     return frame.Derived<DescribedKeypoints>(&method_, max_keypoints);
-  }
-
-  Observation ObserveKeypoint(const Frame& frame,
-                              const cv::KeyPoint& keypoint) const {
-    return ObserveAt(frame, keypoint.pt, method_.SigmaPx(keypoint));
   }
 
   const DescriptorMethod& method_;

@@ -114,8 +114,6 @@ std::vector<std::string> FrontendNames();
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options);
 
-// The frontends of MakeFrontend, which checks the options.
-
 // Tracks corners with pyramidal Lucas-Kanade (Bouguet 2001), always from the
 // reference, which prevents drift.
 std::unique_ptr<Frontend> MakeKltFrontend(const FrontendOptions& options);

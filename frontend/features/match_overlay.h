@@ -14,11 +14,9 @@ namespace rgbd_pose {
 // image with a strip below it for the caption and the legend. A match is a dot
 // where the feature is now (cur) and a line from its place in the reference
 // (prev), in the colour of its robust weight; the largest weights are on top.
-// If the estimate does not have one weight per match, all are light grey.
-//
-// `camera` is the camera of the frame; it maps the undistorted observations
-// back into the distorted image. The caption is ASCII; text beyond about 80
-// characters is cut off. The size of the picture depends only on the image's.
+// If the estimate does not have one weight per match, all are light grey. The
+// caption is ASCII; text beyond about 80 characters is cut off. The size of the
+// picture depends only on the image's. `camera`: of the frame.
 cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
                     const FeatureMatches& found, const MotionEstimate& estimate,
                     const std::string& caption);

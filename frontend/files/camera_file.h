@@ -26,10 +26,9 @@ struct CameraSetup {
   // Raw units of the depth image per metre; nothing if unknown.
   std::optional<double> depth_scale;
 
-  // As in RgbdCamera.
-  DepthCorrection depth_correction;
-  Shutter color_shutter;  // see RgbdCamera
-  Shutter depth_shutter;  // see RgbdCamera
+  DepthCorrection depth_correction;  // see RgbdCamera
+  Shutter color_shutter;             // see RgbdCamera
+  Shutter depth_shutter;             // see RgbdCamera
 
   // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;
@@ -50,17 +49,15 @@ RgbdCamera RegisteredCamera(const CameraSetup& setup);
 //  - Kalibr: cam0 with camera_model pinhole, intrinsics [fx fy cx cy],
 //    distortion_model radtan with distortion_coeffs [k1 k2 p1 p2] or
 //    equidistant with [k1 k2 k3 k4], resolution [width height].
-// Top-level keys of all layouts: the depth scale, DepthMapFactor or
-// RGBD.DepthMapFactor (raw units per metre; only ORB-SLAM writes it), and with
-// the default 0 exposure times of rows (s, see Shutter): color_time_offset,
-// color_readout, depth_time_offset, depth_readout; and errors of depth (see
-// DepthCorrection): inverse_depth_offset (1/m), depth_rotation (rotation
-// vector, rad), depth_translation (m).
+// Top-level keys of all layouts: DepthMapFactor or RGBD.DepthMapFactor (raw
+// depth units per metre); with the default 0 exposure times of rows (s, see
+// Shutter), color_time_offset, color_readout, depth_time_offset, depth_readout,
+// and errors of depth (see DepthCorrection), inverse_depth_offset (1/m),
+// depth_rotation (rotation vector, rad), depth_translation (m).
 // `depth_camera` is the name of the depth camera in a Kalibr file: cam0 if
-// depth is registered to colour, otherwise cam1, for example. Each camera but
-// cam0 has T_cn_cnm1, the transform from the camera before it. Empty means that
-// depth is registered, but is an error for a file with several cameras.
-// Throws InputError (file:line, key) for anything else.
+// depth is registered to colour, otherwise a later one. These have T_cn_cnm1,
+// the transform from the camera before. Empty: registered, but an error for a
+// file with several cameras. Throws InputError (file:line, key) for all else.
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera = "");
 

@@ -7,14 +7,6 @@
 #include "frontend/files/png_decoder.h"
 
 namespace rgbd_pose {
-namespace {
-
-bool StartsWith(const std::shared_ptr<const PngBytes>& png,
-                const std::string& start) {
-  return png != nullptr && png->bytes.compare(0, start.size(), start) == 0;
-}
-
-}  // namespace
 
 StoredImages::StoredImages(const Frame& frame)
     : timestamp(frame.timestamp),
@@ -26,9 +18,7 @@ StoredImages::StoredImages(const Frame& frame)
 Frame StoredImages::Restore() const {
   const std::string of =
       " image of the keyframe at " + FixedNumber(timestamp, 6);
-  Frame frame;
-  frame.timestamp = timestamp;
-  frame.depth_delay = depth_delay;
+  Frame frame = {0, timestamp, depth_delay};
   frame.depth_scale = depth_scale;
   frame.gray = DecodeGrayImage(gray->bytes, "the grey" + of);
   frame.depth = DecodeDepthImage(depth->bytes, "the depth" + of);
@@ -36,8 +26,12 @@ Frame StoredImages::Restore() const {
 }
 
 std::string StoredImages::Check(int width, int height) const {
-  if (!StartsWith(gray, PngStart(width, height, 8)) ||
-      !StartsWith(depth, PngStart(width, height, 16))) {
+  const auto is_png = [=](const std::shared_ptr<const PngBytes>& png,
+                          int bits) {
+    return png != nullptr &&
+           png->bytes.rfind(PngStart(width, height, bits), 0) == 0;
+  };
+  if (!is_png(gray, 8) || !is_png(depth, 16)) {
     return Format(
         "the images must be PNG files of %d x %d pixels, 8-bit grey and "
         "16-bit depth",

@@ -4,23 +4,13 @@
 #include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
-namespace {
-
-// Keypoints detected, and kept. With half as many, half as many pairs of real
-// keyframes are found to show the same place (docs/places.md).
-constexpr int kMaxKeypoints = 2000;
-constexpr int kMaxFeatures = 800;
-
-// A motion is accepted with this many inliers and this share of the matches.
-// Between different places fewer than 6 matches agree on a motion; the rest is
-// a margin for repetitive texture.
-constexpr int kMinInliers = 10;
-constexpr double kMinInlierShare = 0.1;
-
-}  // namespace
 
 PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options) {
+  // Keypoints detected, and kept. With half as many, half as many pairs of real
+  // keyframes are found to show the same place (docs/places.md).
+  constexpr int kMaxKeypoints = 2000;
+  constexpr int kMaxFeatures = 800;
   const auto& all = frame.Derived<DescribedKeypoints>(&kOrb, kMaxKeypoints);
   PlaceFeatures features;
   features.described = all.Select(
@@ -36,6 +26,11 @@ PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
 std::optional<Consensus> VerifyGeometrically(const PlaceFeatures& prev,
                                              const PlaceFeatures& cur,
                                              const Camera& camera) {
+  // A motion is accepted with this many inliers and this share of the matches.
+  // Between different places fewer than 6 matches agree on a motion; the rest
+  // is a margin for repetitive texture.
+  constexpr int kMinInliers = 10;
+  constexpr double kMinInlierShare = 0.1;
   Correspondences matches(camera);
   for (const KeypointMatch& match :
        MatchKeypoints(kOrb, prev.described, cur.described, nullptr)) {

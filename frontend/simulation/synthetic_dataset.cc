@@ -254,10 +254,7 @@ Frame SyntheticDataset::Read(int index) const {
     rendering.depth = MeasureDepth(rendering.depth, measures.fx,
                                    sequence + frame + (uint64_t{1} << 40));
   }
-  Frame frame;
-  frame.index = index;
-  frame.timestamp = timestamp(index);
-  frame.depth_delay = options_.depth_delay_s;
+  Frame frame = {index, timestamp(index), options_.depth_delay_s};
   frame.color_shutter = options_.color_shutter;
   frame.depth_shutter = options_.depth_shutter;
   frame.color = rendering.color;

@@ -52,9 +52,8 @@ struct SyntheticOptions {
 
   // Independently moving objects: a printed sheet over this share of the view,
   // 0 to 0.45, 1 m in front of the camera, that moves on an ellipse at 5 to 8
-  // px per frame (640 x 480 at 30 Hz); and 0 to 3 printed boxes, as tall as
-  // children, that walk back and forth in the scene "room" at up to 0.9 m/s,
-  // through its furniture.
+  // px per frame (640 x 480 at 30 Hz); and 0 to 3 printed boxes that walk to
+  // and fro in the scene "room" at up to 0.9 m/s, through its furniture.
   double moving_patch = 0.0;
   int walking_boxes = 0;
 
