@@ -20,7 +20,7 @@ struct DescriptorMethod;
 struct FrontendOptions {
   Camera camera;  // of all frames
 
-  DepthLookupOptions depth;  // which depths are used, and their noise
+  DepthLookupOptions depth = {};  // which depths are used, and their noise
 
   // The number of features wanted in a reference frame.
   int max_features = 600;
