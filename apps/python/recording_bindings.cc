@@ -16,6 +16,7 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
+#include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
@@ -83,10 +84,15 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
   if (!associations.is_none()) {
     options.associations_file = PathFrom(associations);
   }
-  if (py::isinstance<RgbdCamera>(camera)) {
-    options.camera = camera.cast<RgbdCamera>();
-  } else if (!camera.is_none()) {
+  const bool is_file = !camera.is_none() && !py::isinstance<RgbdCamera>(camera);
+  if (!is_file && !depth_camera.empty()) {
+    throw InputError("depth_camera '" + depth_camera +
+                     "': needs a Kalibr file with this camera as camera");
+  }
+  if (is_file) {
     options.camera = ResolveCameraSetup(PathFrom(camera), depth_camera);
+  } else if (!camera.is_none()) {
+    options.camera = camera.cast<RgbdCamera>();
   }
   options.depth_scale = depth_scale;
   options.topics = topics;

@@ -42,7 +42,8 @@ struct DecodedPng {
 // to gray, one channel of 16 bits to depth. Other kinds are left to OpenCV. A
 // file that begins as a PNG is damaged if it is cut off, if a checksum of a
 // needed chunk is wrong, if a side has more than 16384 pixels or, for the kinds
-// above, if bytes of the rows are missing or invalid. Thread-safe.
+// above, if bytes of the rows are missing or invalid. (libpng would write to
+// stderr.) Thread-safe.
 DecodedPng DecodePng(std::string_view bytes, PngUse use);
 
 }  // namespace rgbd_pose

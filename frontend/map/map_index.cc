@@ -52,6 +52,7 @@ struct LineReader {
          " words, this one has " + std::to_string(line.words.size()));
   }
   const std::string& Kind() const { return line.words[0]; }
+  size_t Count() const { return line.words.size(); }
   const std::string& Word() { return line.words[next++]; }
   void Number(double* value) {
     *value = ParseNumber(Word(), path, line.number, "a " + Kind());
@@ -103,7 +104,7 @@ void PassEdge(Line* line, Edge* edge) {
 }
 
 void ReadCamera(LineReader* line, Camera* camera) {
-  const bool is_usual = line->line.words.size() <= 3 + kNumUsualParameters;
+  const bool is_usual = line->Count() <= 3 + kNumUsualParameters;
   const size_t count =
       is_usual ? kNumUsualParameters : kCameraParameters.size();
   line->Require(3 + count + (is_usual ? 0 : 1));

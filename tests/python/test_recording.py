@@ -87,6 +87,7 @@ def test_refuses_what_it_cannot_read(sequence, tmp_path):
         ("frames", sequence, {"frames": "all"}),
         ("none of them", sequence, {"frames": "9999-"}),
         ("camera 'kinect'", sequence, {"camera": "kinect"}),
+        ("depth_camera 'cam1': needs", sequence, {"depth_camera": "cam1"}),
     ]:
         with pytest.raises(rgbd_pose.InputError, match=match):
             rgbd_pose.Recording(path, **settings)

@@ -2,7 +2,7 @@
 
 #include <ceres/autodiff_cost_function.h>
 
-#include "costs/calibration/bundle_adjustment.h"
+#include "costs/calibration/landmark_block.h"
 
 namespace rgbd_pose {
 

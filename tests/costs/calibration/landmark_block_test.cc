@@ -1,10 +1,11 @@
 // A known distance between two points: its value, and its hand-written Jacobian
 // against ceres::Jet.
 
+#include "costs/calibration/landmark_block.h"
+
 #include <ceres/autodiff_cost_function.h>
 #include <gtest/gtest.h>
 
-#include "costs/calibration/bundle_adjustment.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "costs/calibration/bundle_adjustment.h"
+#include "costs/calibration/landmark_block.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/landmark_oracle.h"

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "costs/calibration/bundle_adjustment.h"
+#include "costs/calibration/landmark_block.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/both_jacobians.h"
 #include "tests/support/landmark_oracle.h"
