@@ -181,17 +181,12 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
     is_free[at] = !IsFixed(at) && (first[at] != at || is_held[at]);
     add(at, !is_free[at]);
   }
-  // Errors of tracked pairs cancel in part along a path: what is wrong with a
-  // keyframe affects the pair that ends with it and the pair that begins with
-  // it. So much of the covariance remains (paths of real cameras with truth).
-  constexpr double kRemaining = 0.5;
   for (const KeyframePair& pair : pairs_) {
     RelativePose edge = pair.edge;
     if (!is_free[edge.ref] && !is_free[edge.cur]) continue;
     add(edge.ref, true);
     add(edge.cur, true);
-    if (pair.is_tracked) edge.covariance *= kRemaining;
-    edge.covariance = CovarianceOf(edge);
+    edge.covariance = CovarianceInGraph(pair);
     edge.ref = problem.pose_of[edge.ref];
     edge.cur = problem.pose_of[edge.cur];
     problem.graph.AddEdge(edge, LossOf(pair));

@@ -140,8 +140,10 @@ class KeyframeGraph {
   std::vector<int> All() const;
 
   // In keyframe_noise.cc. The covariance with noise floor and proportional
-  // error; the squared distance of an edge from the current poses, in sigmas.
+  // error, and as it counts in the graph; the squared distance of an edge from
+  // the current poses, in sigmas.
   MotionMatrix CovarianceOf(const RelativePose& edge) const;
+  MotionMatrix CovarianceInGraph(const KeyframePair& pair) const;
   double SquaredDistance(const RelativePose& edge,
                          const MotionMatrix& covariance) const;
   const ceres::LossFunction* LossOf(const KeyframePair& pair) const {

@@ -54,6 +54,16 @@ MotionMatrix KeyframeGraph::CovarianceOf(const RelativePose& edge) const {
   return covariance;
 }
 
+MotionMatrix KeyframeGraph::CovarianceInGraph(const KeyframePair& pair) const {
+  // Errors of tracked pairs cancel in part along a path: what is wrong with a
+  // keyframe affects the pair that ends with it and the pair that begins with
+  // it. So much of the covariance remains (paths of real cameras with truth).
+  constexpr double kRemaining = 0.5;
+  RelativePose edge = pair.edge;
+  if (pair.is_tracked) edge.covariance *= kRemaining;
+  return CovarianceOf(edge);
+}
+
 double KeyframeGraph::SquaredDistance(const RelativePose& edge,
                                       const MotionMatrix& covariance) const {
   return SquaredMahalanobisDistance(CurFromRef(edge.ref, edge.cur),
@@ -61,7 +71,7 @@ double KeyframeGraph::SquaredDistance(const RelativePose& edge,
 }
 
 MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
-  const MotionMatrix covariance = CovarianceOf(pair.edge);
+  const MotionMatrix covariance = CovarianceInGraph(pair);
   double rho[3];
   LossOf(pair)->Evaluate(SquaredDistance(pair.edge, covariance), rho);
   return covariance / std::max(rho[1], 1e-9);
