@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Runs the commands of a page: docs_commands.py SOURCE BUILD PAGE
+"""Runs the commands of a page: docs_commands.py SOURCE BUILD PAGE [--slow]
 
 The ```sh blocks of PAGE (a path within SOURCE) are run in order, by one bash
 that stops at the first failure, in a scratch folder that looks like a checkout
 with a finished BUILD. tests/docs/docs_exceptions.py lists the commands that are
-replaced or left out, and what a page needs before its commands are run.
+replaced or left out (slow ones only without --slow), and what a page needs
+before its commands are run.
 
 Tools that would install packages or build are replaced by stand-ins, which only
 check that their arguments (a preset, for example) exist.
@@ -137,7 +138,10 @@ def main():
     source, build = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
     page_name = sys.argv[3]
     page = (source / page_name).read_text().splitlines()
-    exceptions = docs_exceptions.EXCEPTIONS.get(page_name, {})
+    run_slow = sys.argv[4:] == ['--slow']
+    exceptions = {command: instead for command, instead
+                  in docs_exceptions.EXCEPTIONS.get(page_name, {}).items()
+                  if not (run_slow and instead.is_slow)}
     # The places where cmake looks for it (cmake/ReportAssets.cmake).
     if ('rgbd_report' in '\n'.join(page) and
             not any((folder / 'npm' / 'node_modules').exists()

@@ -6,12 +6,17 @@ the test.
 
 import collections
 
-# The reason, and the command that is run instead (empty: none).
-Instead = collections.namedtuple('Instead', 'why run')
+# The reason, the command that is run instead (empty: none), and whether the
+# command is run as written with --slow.
+Instead = collections.namedtuple('Instead', 'why run is_slow', defaults=[False])
 
 
 def left_out(why):
     return Instead(why, '')
+
+
+def slow(why):
+    return Instead(why, '', True)
 
 
 def in_place(run, why):
@@ -73,6 +78,7 @@ EXCEPTIONS = {
         'scripts/frontends': left_out('takes minutes'),
     },
     'README.md': {
+        'scripts/demo': slow('renders and tracks for minutes'),
         'scripts/download_tum freiburg1_xyz':
             in_place(
                 simulated('rgbd_dataset_freiburg1_xyz', '--camera=tum_fr1', 10),
