@@ -238,6 +238,18 @@ TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
   EXPECT_GT(moved_as_measured, 1e-3);
 }
 
+// Two pairs of the same keyframes contradict each other by 3 mm.
+TEST(KeyframeGraphTest, APairOfTheOdometryCountsTwice) {
+  KeyframeGraph graph(10, 0.01);
+  RelativePose edge = {graph.Add({}, 0), graph.Add({}, 0), {}, {}};
+  edge.covariance = 1e-4 * MotionMatrix::Identity();
+  graph.AddPair(edge, /*is_tracked=*/true);
+  edge.cur_from_ref.translation.x() = 0.003;
+  graph.AddPair(edge, /*is_tracked=*/false);
+  ASSERT_EQ(graph.SolveAll(), "");
+  EXPECT_NEAR(graph.pose(edge.cur).translation.norm(), 0.001, 1e-4);
+}
+
 // Rotations are wrong by 5 %, far more than their covariances allow.
 TEST(KeyframeGraphTest, SlackIsTheShareThatMotionsAreOffBy) {
   for (const double wrong : {1e-9, 0.05}) {

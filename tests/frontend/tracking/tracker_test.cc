@@ -96,6 +96,51 @@ TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
   }
 }
 
+// Finds everything a few pixels off, in the same way in each corner of 2 x 2.
+class UnevenFrontend final : public Frontend {
+ public:
+  explicit UnevenFrontend(double error_px)
+      : Frontend({kCamera}), error_px_(error_px) {}
+
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
+    return std::make_unique<FeatureSet>(*FeatureWall().features);
+  }
+  void Match(const FeatureSet& reference, const PreparedFrame&, const Rigid3d&,
+             FeatureMatches* matches) override {
+    matches->Clear();
+    for (size_t i = 0; i < reference.observations.size(); ++i) {
+      Observation found = reference.observations[i];
+      found.u +=
+          (found.u < 320.0) == (found.v < 240.0) ? error_px_ : -error_px_;
+      matches->Add(reference, static_cast<int>(i), found);
+    }
+  }
+
+ private:
+  double error_px_;
+};
+
+TEST(FeatureTrackerTest, TheCovarianceIncludesWhatNeighboursHaveInCommon) {
+  for (const bool is_uneven : {false, true}) {
+    FeatureTracker tracker(
+        std::make_unique<UnevenFrontend>(is_uneven ? 1.0 : 0.0),
+        Estimator({}, MakeRobustCosts()));
+    const PreparedFrame frame{Frame()};
+    std::string why_not;
+    const auto reference =
+        tracker.MakeReference(frame, nullptr, nullptr, &why_not);
+    ASSERT_NE(reference, nullptr) << why_not;
+    TrackingResult tracked(kCamera);
+    tracker.Track(*reference, frame, Rigid3d(), &tracked);
+    const MotionMatrix alone = Estimator({}, MakeRobustCosts())
+                                   .Estimate(tracked.matches.matches, Rigid3d())
+                                   .covariance;
+    const double factor = tracked.estimate.covariance.trace() / alone.trace();
+    EXPECT_NEAR(factor, tracked.covariance_factor, 1e-3 * factor);
+    EXPECT_EQ(factor > 1.5, is_uneven) << factor;
+  }
+}
+
 class TrackerTest : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Tracker> Make(const TrackerOptions& options = {}) const {
