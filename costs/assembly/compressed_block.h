@@ -62,9 +62,10 @@ void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
   const Eigen::Matrix<double, K, 1> D = sums.hessian.diagonal().unaryExpr(
       [](double square) { return square > 0.0 ? std::sqrt(square) : 1.0; });
   const auto inverse = D.cwiseInverse().eval();
-  const Factorable<K> scaled =
+  // One type for all K: this takes long to compile and is rarely needed.
+  const Factorable<12> scaled =
       inverse.asDiagonal() * sums.hessian * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Factorable<K>> eigen(scaled);
+  const Eigen::SelfAdjointEigenSolver<Factorable<12>> eigen(scaled);
   const double smallest =
       kRounding * std::max(0.0, eigen.eigenvalues().maxCoeff());
   for (int i = 0; i < K; ++i) {

@@ -19,7 +19,7 @@ void WriteImages(const rgbd_pose::FuzzFolder& folder) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(associations) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   static const bool once = (WriteImages(folder), true);

@@ -36,7 +36,7 @@ void ReadAll(const std::string& path, BagKind kind) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(bag_files) {
   if (size < 3) return 0;
   static const FuzzFolder folder;
   const std::string_view bytes = FuzzText(data + 3, size - 3);

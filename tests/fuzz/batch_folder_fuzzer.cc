@@ -5,7 +5,7 @@
 #include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(batch_folder) {
   using namespace rgbd_pose;
   static const FuzzFolder files;
   static const BatchRun run = {

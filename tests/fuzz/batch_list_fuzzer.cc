@@ -6,7 +6,7 @@
 #include "apps/batch/batch_plan.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(batch_list) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   std::filesystem::create_directories(folder.path() + "/a");

@@ -3,7 +3,7 @@
 #include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(batch_report) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   folder.Write("summary.csv", FuzzText(data, size));

@@ -34,7 +34,7 @@ void RequireEqual(const RgbdCamera& a, const RgbdCamera& b) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(camera_file) {
   static const FuzzFolder folder;
   const std::string file = folder.Write("camera.yaml", FuzzText(data, size));
   MayRefuse([&] {

@@ -3,7 +3,7 @@
 #include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(csv_table) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   const std::string file = folder.Write("table.csv", FuzzText(data, size));

@@ -5,7 +5,7 @@
 #include "frontend/files/depth_noise_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(depth_noise_file) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   const std::string file = folder.Write("noise.yaml", FuzzText(data, size));

@@ -11,7 +11,7 @@ DEFINE_int32(whole, 0, "");
 DEFINE_uint32(seed, 0, "");
 DEFINE_double(real, 0.0, "");
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(flag_reader) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   const std::string file = folder.Write("f", FuzzText(data, size));

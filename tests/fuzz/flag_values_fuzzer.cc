@@ -5,7 +5,7 @@
 #include "frontend/sources/frame_range.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(flag_values) {
   using namespace rgbd_pose;
   const std::string text(FuzzText(data, size));
   MayRefuse([&] {

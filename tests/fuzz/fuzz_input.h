@@ -10,11 +10,24 @@
 
 #include "core/util/input_error.h"
 
-// The function that every target defines. It accepts any bytes, in builds for
-// libFuzzer as well as from the corpus runner.
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+// FUZZ_TARGET(NAME) { ... return 0; } defines a target: what is done with any
+// `size` bytes at `data`. It is a program for libFuzzer or, in other builds, one
+// of the targets of corpus_test.
+#ifdef RGBD_POSE_BUILD_FUZZERS
+#define FUZZ_TARGET(name) \
+  extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
+#else
+#define FUZZ_TARGET(name)                                    \
+  static int name##_target(const uint8_t* data, size_t size); \
+  static const bool name##_is_added =                        \
+      rgbd_pose::AddFuzzTarget(#name, &name##_target);       \
+  static int name##_target(const uint8_t* data, size_t size)
+#endif
 
 namespace rgbd_pose {
+
+// Makes a target known to corpus_test. Returns true.
+bool AddFuzzTarget(const char* name, int (*target)(const uint8_t*, size_t));
 
 inline std::string_view FuzzText(const uint8_t* data, size_t size) {
   return {reinterpret_cast<const char*>(data), size};

@@ -3,7 +3,7 @@
 #include "frontend/files/image_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(image_file) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   const std::string file = folder.Write("image", FuzzText(data, size));

@@ -41,7 +41,7 @@ void Read(const std::string& text) {
 }  // namespace
 }  // namespace rgbd_pose
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(map_index) {
   using namespace rgbd_pose;
   const std::string text(FuzzText(data, size));
   Read(text);

@@ -3,7 +3,7 @@
 #include "frontend/bags/bag_reader.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(mcap_file) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   const std::string file = folder.Write("a.mcap", FuzzText(data, size));

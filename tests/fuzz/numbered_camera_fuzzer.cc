@@ -4,7 +4,7 @@
 #include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(numbered_camera) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   static const bool has_folder =

@@ -3,7 +3,7 @@
 #include "frontend/sources/numbered_layouts.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(numbered_poses) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   static const bool has_folder =

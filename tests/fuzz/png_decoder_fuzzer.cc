@@ -50,7 +50,7 @@ void DecodeAsRows(std::string_view bytes, bool is_depth) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(png_decoder) {
   const std::string_view bytes = rgbd_pose::FuzzText(data, size);
   Decode(bytes);
   if (bytes.empty()) return 0;

@@ -45,7 +45,7 @@ void ReadMessage(int kind, const WireReader& reader) {
 }  // namespace
 }  // namespace rgbd_pose
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(ros_messages) {
   using namespace rgbd_pose;
   if (size == 0) return 0;
   const auto format = data[0] % 2 == 0 ? WireFormat::kRos1 : WireFormat::kCdr;

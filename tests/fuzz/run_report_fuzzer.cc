@@ -4,7 +4,7 @@
 #include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(run_report) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   std::string_view rest = FuzzText(data, size);

@@ -5,7 +5,7 @@
 #include "core/evaluation/trajectory.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(trajectory) {
   using namespace rgbd_pose;
   static const FuzzFolder folder;
   const std::string file = folder.Write("trajectory.txt", FuzzText(data, size));

@@ -3,7 +3,7 @@
 #include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+FUZZ_TARGET(tum_lists) {
   using namespace rgbd_pose;
   // Of the images named in the lists, only their existence is checked.
   static const FuzzFolder folder;

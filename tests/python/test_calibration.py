@@ -81,7 +81,7 @@ import os, signal, threading, time, rgbd_pose
 def calibrate():
     begun = time.process_time()
     try:
-        rgbd_pose.calibrate({str(recording)!r}, {str(recording / "camera.yaml")!r})
+        rgbd_pose.calibrate({str(recording)!r}, max_views=5000)
     except KeyboardInterrupt:
         print("interrupted")
     return time.process_time() - begun
