@@ -11,16 +11,16 @@
 #include "core/util/input_error.h"
 
 // FUZZ_TARGET(NAME) { ... return 0; } defines a target: what is done with any
-// `size` bytes at `data`. It is a program for libFuzzer or, in other builds, one
-// of the targets of corpus_test.
+// `size` bytes at `data`. It is a program for libFuzzer or, in other builds,
+// one of the targets of corpus_test.
 #ifdef RGBD_POSE_BUILD_FUZZERS
 #define FUZZ_TARGET(name) \
   extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
 #else
-#define FUZZ_TARGET(name)                                    \
+#define FUZZ_TARGET(name)                                     \
   static int name##_target(const uint8_t* data, size_t size); \
-  static const bool name##_is_added =                        \
-      rgbd_pose::AddFuzzTarget(#name, &name##_target);       \
+  static const bool name##_is_added =                         \
+      rgbd_pose::AddFuzzTarget(#name, &name##_target);        \
   static int name##_target(const uint8_t* data, size_t size)
 #endif
 
