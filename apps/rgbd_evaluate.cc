@@ -68,7 +68,7 @@ ProgramInfo Info() {
 std::vector<int> ParseFrames(const std::string& text) {
   std::vector<int> frames;
   if (text.empty()) return frames;
-  for (const std::string& word : SplitText(text, ',')) {
+  for (const std::string& word : SplitList(text)) {
     frames.push_back(ParseWhole(word).value_or(0));
     if (frames.back() < 1) {
       throw InputError("--rpe_frames=" + text + ": '" + word +

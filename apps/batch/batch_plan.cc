@@ -23,16 +23,6 @@
 namespace rgbd_pose {
 namespace {
 
-// Splits a text and removes spaces around the parts.
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts = SplitText(text, separator);
-  for (std::string& part : parts) {
-    part.erase(0, part.find_first_not_of(' '));
-    part.erase(part.find_last_not_of(' ') + 1);
-  }
-  return parts;
-}
-
 void CheckKnown(const std::string& name,
                 const std::vector<std::string>& known) {
   if (std::count(known.begin(), known.end(), name) == 0) {
@@ -43,7 +33,7 @@ void CheckKnown(const std::string& name,
 std::vector<std::string> ParseList(const BatchSetting& setting,
                                    const std::string& text) {
   std::vector<std::string> values;
-  for (const std::string& value : Split(text, ',')) {
+  for (const std::string& value : SplitList(text)) {
     Located(std::string("--") + setting.list, [&] {
       if (std::count(values.begin(), values.end(), value) > 0) {
         throw InputError("'" + value + "' appears twice");
@@ -128,7 +118,7 @@ const std::vector<BatchSetting>& BatchSettings() {
   static const std::vector<BatchSetting> settings = {
       {"costs", "cost", "cost",
        [](const std::string& name) {
-         for (const std::string& part : Split(name, '+')) {
+         for (const std::string& part : SplitList(name, '+')) {
            CheckKnown(part, CostNames());
          }
        }},

@@ -1,5 +1,6 @@
 #include "apps/calibration/calibration_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -63,8 +64,8 @@ std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
   }
   // Tolerates slightly uneven timestamps.
   constexpr double kSlack = 0.1;
-  const int step = static_cast<int>(
-      std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack));
+  const int step = static_cast<int>(std::min(
+      1e9, std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack)));
   if (step < 2) return "";
   return "0-" + std::to_string(timestamps.size() - 1) + ":" +
          std::to_string(step);
@@ -100,6 +101,7 @@ RecordingCalibration CalibrateRecording(
     const SequenceSettings& sequence, const OdometrySettings& odometry,
     const SlamSettings& slam, const CalibrationSettings& settings, int threads,
     const std::function<void(int pass, int done, int all)>& on_frame) {
+  RequireSound(settings.Check(), "calibration: ");
   RecordingCalibration all;
   RgbdCamera first;
   SequenceSettings part = sequence;
@@ -120,7 +122,6 @@ RecordingCalibration CalibrateRecording(
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
     const int frames = static_cast<int>(opened.source->timestamps().size());
-    RequireSound(settings.Check(), "calibration: ");
     const RgbdCamera camera = opened.source->camera();
     SequenceRun run(with_shutter, slam, camera.camera, opened.inputs);
     int done = 0;

@@ -26,7 +26,8 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
                         Eigen::Vector3d* in_keyframe) {
     const size_t frame = NearestTime(times, time);
     constexpr double kMaxOff = 0.1;  // s
-    if (times.empty() || std::abs(times[frame] - time) > kMaxOff) {
+    if (times.empty() || data.timestamps.empty() ||
+        std::abs(times[frame] - time) > kMaxOff) {
       throw InputError("known_length: no frame was tracked at " +
                        std::to_string(time) + " s");
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 #include <system_error>
 
 #include "core/util/input_error.h"
@@ -63,16 +62,13 @@ std::vector<std::string> ChosenLosses(const ExperimentSettings& settings,
                                       const std::vector<std::string>& own) {
   if (settings.losses.empty()) return own;
   std::vector<std::string> losses;
-  std::istringstream words(settings.losses);
-  for (std::string loss; std::getline(words >> std::ws, loss, ',');) {
-    loss.erase(loss.find_last_not_of(' ') + 1);
+  for (const std::string& loss : SplitList(settings.losses)) {
     Located("--losses", [&] { ParseLoss(loss); });
     if (std::find(losses.begin(), losses.end(), loss) != losses.end()) {
       throw InputError("--losses: '" + loss + "' appears twice");
     }
     losses.push_back(loss);
   }
-  if (losses.empty()) throw InputError("--losses contains no names");
   return losses;
 }
 

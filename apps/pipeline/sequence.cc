@@ -19,7 +19,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   options.keep_color = keep_color;
   options.associations_file = settings.associations;
   if (!settings.topics.empty()) {
-    options.topics = SplitText(settings.topics, ',');
+    options.topics = SplitList(settings.topics);
   }
   options.depth_scale = settings.depth_scale;
   if (!settings.camera.empty()) {

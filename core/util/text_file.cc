@@ -113,6 +113,15 @@ std::vector<std::string> SplitText(std::string_view text, char separator) {
   }
 }
 
+std::vector<std::string> SplitList(std::string_view text, char separator) {
+  std::vector<std::string> parts = SplitText(text, separator);
+  for (std::string& part : parts) {
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+  }
+  return parts;
+}
+
 std::string Join(const std::vector<std::string>& names, const char* separator) {
   std::string text;
   for (const std::string& name : names) {

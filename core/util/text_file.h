@@ -28,6 +28,9 @@ std::string_view WithoutByteOrderMark(std::string_view text);
 // The parts of a text between separators: at least one, possibly empty.
 std::vector<std::string> SplitText(std::string_view text, char separator);
 
+// The same without spaces around the parts, as people write lists.
+std::vector<std::string> SplitList(std::string_view text, char separator = ',');
+
 // Names as a list for a message: "a, b, c".
 std::string Join(const std::vector<std::string>& names,
                  const char* separator = ", ");

@@ -143,6 +143,8 @@ TEST_F(BadInputTest, Compare) {
           {"no camera", nullptr, "--experiment={seq}", 1, "--camera is needed"},
           {"unknown loss", nullptr, "--experiment=xyz --losses=tuckey", 2,
            "--losses: unknown loss 'tuckey'"},
+          {"no loss", nullptr, "--experiment=xyz --losses=tukey,", 2,
+           "--losses: unknown loss ''"},
           {"a loss twice", nullptr, "--experiment=xyz --losses=tukey,tukey", 2,
            "--losses: 'tukey' appears twice"},
           {"only a comma", nullptr, "--experiment=xyz --losses=,", 2,

@@ -133,5 +133,13 @@ TEST(TextFileTest, TellsAheadWhatItCannotWrite) {
   EXPECT_EQ(ReadTextFile(folder / "a.txt"), "x");
 }
 
+TEST(TextFileTest, ListsMayHaveSpacesAndKeepEmptyParts) {
+  using Parts = std::vector<std::string>;
+  EXPECT_EQ(SplitList(" a, b c ,,"), (Parts{"a", "b c", "", ""}));
+  EXPECT_EQ(SplitList("  "), Parts{""});
+  EXPECT_EQ(SplitList("a +b", '+'), (Parts{"a", "b"}));
+  EXPECT_EQ(SplitText("a, b", ','), (Parts{"a", " b"}));
+}
+
 }  // namespace
 }  // namespace rgbd_pose
