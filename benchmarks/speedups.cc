@@ -87,8 +87,8 @@ std::vector<std::string> TrackedSequences(const BenchmarkResults& results) {
 
 std::vector<SpeedupRow> FindSpeedups(const BenchmarkResults& results) {
   Collector collector(results);
-  // Runs on shared machines had 20 to 26 over autodiff: half of the time is that
-  // of Ceres, whatever the costs do.
+  // Runs on shared machines had 20 to 26 over autodiff: half of the time is
+  // that of Ceres, whatever the costs do.
   AddSolves("solve_n300", "huber", 300, {20.0, 15.0, 1.0 / 3.0}, &collector);
   AddSolves("dense_100k", "huber", 100000, {0.0, 20.0, 0.8}, &collector);
   AddSolves("solve_n300_none", "none", 300, {}, &collector);

@@ -64,8 +64,8 @@ std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
   }
   // Tolerates slightly uneven timestamps.
   constexpr double kSlack = 0.1;
-  const int step = static_cast<int>(std::min(
-      1e9, std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack)));
+  const int step = static_cast<int>(
+      std::min(1e9, std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack)));
   if (step < 2) return "";
   return "0-" + std::to_string(timestamps.size() - 1) + ":" +
          std::to_string(step);
