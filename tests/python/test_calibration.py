@@ -72,8 +72,6 @@ def test_says_what_makes_no_sense(recording):
         rgbd_pose.calibrate(recording / "nothing")
     with pytest.raises(rgbd_pose.InputError, match="max_passes"):
         rgbd_pose.calibrate(recording, max_passes=0)
-    with pytest.raises(rgbd_pose.InputError, match="max_rate"):
-        rgbd_pose.calibrate(recording, max_rate=float("nan"))
 
 
 def test_an_interrupt_ends_it(recording):

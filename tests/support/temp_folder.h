@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -9,8 +10,8 @@
 
 namespace rgbd_pose {
 
-// A folder for one test, removed afterwards. It is named after the test, since
-// tests may run at the same time.
+// A folder for one test, removed afterwards. It is named after the test and its
+// process, since tests, and checkouts, may run at the same time.
 class TempFolder {
  public:
   TempFolder() {
@@ -20,7 +21,8 @@ class TempFolder {
     for (char& c : name) {
       if (c == '/') c = '_';
     }
-    path_ = std::filesystem::path(testing::TempDir()) / ("rgbd_pose." + name);
+    name = "rgbd_pose." + name + "." + std::to_string(getpid());
+    path_ = std::filesystem::path(testing::TempDir()) / name;
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
