@@ -124,6 +124,7 @@ TEST_F(BadInputTest, OfCalibrations) {
           {"a share that is none", nullptr, "--determined_share=2", 2,
            "determined_share must be above 0 and at most 1"},
           {"no pass", nullptr, "--max_passes=0", 2, "max_passes must be 1"},
+          {"no rate", nullptr, "--max_rate=nan", 2, "max_rate must not be"},
           {"halves", nullptr, "--max_halves_sigmas=-1", 2,
            "max_halves_sigmas must be positive"},
           {"a noise model that is not there", nullptr, "--depth_noise=a.yaml",
