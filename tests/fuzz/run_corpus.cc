@@ -30,7 +30,10 @@ bool AddFuzzTarget(const char* name, FuzzTarget target) {
 
 int main(int argc, char** argv) {
   namespace fs = std::filesystem;
-  if (argc != 3 || rgbd_pose::Targets().count(argv[1]) == 0) return 2;
+  if (argc != 3 || rgbd_pose::Targets().count(argv[1]) == 0) {
+    std::fprintf(stderr, "usage: corpus_test NAME_OF_TARGET FOLDER\n");
+    return 2;
+  }
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(argv[2])) {
     files.push_back(entry.path());

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -46,13 +47,12 @@ TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
   EXPECT_EQ(wall.SeenFrom(turned).share, 0.0);
 }
 
-// Nearly half of the matches are right, the others wrong: enough matches agree,
-// but the spread is determined by the wrong ones.
-class HalfWrongFrontend final : public Frontend {
+// Finds every feature of the wall where it was, moved by `move`.
+class WallFrontend final : public Frontend {
  public:
-  explicit HalfWrongFrontend(double error_px)
-      : Frontend({kCamera}), error_px_(error_px) {}
+  using Move = std::function<void(size_t feature, Observation* found)>;
 
+  explicit WallFrontend(Move move) : Frontend({kCamera}), move_(move) {}
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
     return std::make_unique<FeatureSet>(*FeatureWall().features);
   }
@@ -61,31 +61,41 @@ class HalfWrongFrontend final : public Frontend {
     matches->Clear();
     for (size_t i = 0; i < reference.observations.size(); ++i) {
       Observation found = reference.observations[i];
-      const double turn = 2.4 * static_cast<double>(i);  // any direction
-      if (i % 9 < 5) {
-        found.u += error_px_ * std::cos(turn);
-        found.v += error_px_ * std::sin(turn);
-      }
+      move_(i, &found);
       matches->Add(reference, static_cast<int>(i), found);
     }
   }
 
  private:
-  double error_px_;
+  Move move_;
 };
 
+// Tracks the wall, seen by a camera that stands still.
+TrackingResult TrackWall(const WallFrontend::Move& move) {
+  FeatureTracker tracker(std::make_unique<WallFrontend>(move),
+                         Estimator({}, MakeRobustCosts()));
+  const PreparedFrame frame{Frame()};
+  std::string why_not;
+  const auto reference =
+      tracker.MakeReference(frame, nullptr, nullptr, &why_not);
+  EXPECT_NE(reference, nullptr) << why_not;
+  TrackingResult tracked(kCamera);
+  if (reference == nullptr) return tracked;
+  tracker.Track(*reference, frame, Rigid3d(), &tracked);
+  return tracked;
+}
+
+// Five of nine matches are off in any direction: the motion is right, but the
+// spread is determined by the wrong ones.
 TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
   for (const bool doubtful : {false, true}) {
-    FeatureTracker tracker(
-        std::make_unique<HalfWrongFrontend>(doubtful ? 30.0 : 0.0),
-        Estimator({}, MakeRobustCosts()));
-    const PreparedFrame frame{Frame()};
-    std::string why_not;
-    const auto reference =
-        tracker.MakeReference(frame, nullptr, nullptr, &why_not);
-    ASSERT_NE(reference, nullptr) << why_not;
-    TrackingResult tracked(kCamera);
-    tracker.Track(*reference, frame, Rigid3d(), &tracked);
+    const double error_px = doubtful ? 30.0 : 0.0;
+    const TrackingResult tracked = TrackWall([&](size_t i, Observation* found) {
+      const double turn = 2.4 * static_cast<double>(i);
+      if (i % 9 >= 5) return;
+      found->u += error_px * std::cos(turn);
+      found->v += error_px * std::sin(turn);
+    });
     EXPECT_GT(tracked.estimate.num_inliers, 60);
     EXPECT_LT(tracked.estimate.cur_from_prev.translation.norm(), 0.005);
     EXPECT_EQ(tracked.status,
@@ -96,42 +106,14 @@ TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
   }
 }
 
-// Finds everything a few pixels off, in the same way in each corner of 2 x 2.
-class UnevenFrontend final : public Frontend {
- public:
-  explicit UnevenFrontend(double error_px)
-      : Frontend({kCamera}), error_px_(error_px) {}
-
-  std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
-    return std::make_unique<FeatureSet>(*FeatureWall().features);
-  }
-  void Match(const FeatureSet& reference, const PreparedFrame&, const Rigid3d&,
-             FeatureMatches* matches) override {
-    matches->Clear();
-    for (size_t i = 0; i < reference.observations.size(); ++i) {
-      Observation found = reference.observations[i];
-      found.u +=
-          (found.u < 320.0) == (found.v < 240.0) ? error_px_ : -error_px_;
-      matches->Add(reference, static_cast<int>(i), found);
-    }
-  }
-
- private:
-  double error_px_;
-};
-
+// Matches are a pixel off, in the same way in each quarter of the image.
 TEST(FeatureTrackerTest, TheCovarianceIncludesWhatNeighboursHaveInCommon) {
   for (const bool is_uneven : {false, true}) {
-    FeatureTracker tracker(
-        std::make_unique<UnevenFrontend>(is_uneven ? 1.0 : 0.0),
-        Estimator({}, MakeRobustCosts()));
-    const PreparedFrame frame{Frame()};
-    std::string why_not;
-    const auto reference =
-        tracker.MakeReference(frame, nullptr, nullptr, &why_not);
-    ASSERT_NE(reference, nullptr) << why_not;
-    TrackingResult tracked(kCamera);
-    tracker.Track(*reference, frame, Rigid3d(), &tracked);
+    const double error_px = is_uneven ? 1.0 : 0.0;
+    const TrackingResult tracked = TrackWall([&](size_t, Observation* found) {
+      const bool is_right = (found->u < 320.0) == (found->v < 240.0);
+      found->u += is_right ? error_px : -error_px;
+    });
     const MotionMatrix alone = Estimator({}, MakeRobustCosts())
                                    .Estimate(tracked.matches.matches, Rigid3d())
                                    .covariance;
