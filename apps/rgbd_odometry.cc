@@ -32,6 +32,7 @@ struct ProgramSettings {
   SequenceSettings sequence;
   OdometrySettings odometry;
   RunOutputSettings output;
+  ViewSettings view;
 };
 
 ProgramInfo Info(ProgramSettings* settings) {
@@ -39,10 +40,9 @@ ProgramInfo Info(ProgramSettings* settings) {
           "estimates the motion of an RGB-D camera along a sequence.",
           "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
           "--output=runs/fr1_xyz",
-          {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
-           {"View", {"view", "view_port", "view_speed"}}},
+          {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}}},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
-           SettingTable(&settings->output)}};
+           SettingTable(&settings->output), SettingTable(&settings->view)}};
 }
 
 int ValidateOnly(const Sequence& sequence, int threads) {
@@ -88,12 +88,16 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source, settings.odometry.features.depth);
 
-  LiveView view(settings.sequence.dataset, source.camera().camera, run);
+  LiveView view(settings.sequence.dataset, settings.view,
+                source.camera().camera, run);
+  if (view.is_open()) {
+    std::fprintf(stderr, "view on     %s\n", view.address().c_str());
+  }
 
   const std::string stopped =
       TrackSource(&source, threads, &run, &output,
-                  [&view](const Frame& frame, const StopSignal& signal) {
-                    return view.Add(frame, signal);
+                  [&view](const Frame& frame, const auto& is_interrupted) {
+                    return view.Add(frame, is_interrupted);
                   });
   const double seconds = SecondsSince(start);
 

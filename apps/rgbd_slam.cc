@@ -42,6 +42,7 @@ struct ProgramSettings {
   OdometrySettings odometry;
   SlamSettings slam;
   RunOutputSettings output;
+  ViewSettings view;
   std::string save_map, load_map;
   bool localise_only = false;
 };
@@ -66,11 +67,10 @@ ProgramInfo Info(ProgramSettings* settings) {
           "closures.",
           "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
           "--output=runs/fr1_room --save_map=maps/room",
-          {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
-           {"View", {"view", "view_port", "view_speed"}}},
+          {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}}},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
            SettingTable(&settings->slam), MapTable(settings),
-           SettingTable(&settings->output)}};
+           SettingTable(&settings->output), SettingTable(&settings->view)}};
 }
 
 void LoadMaps(const ProgramSettings& settings, Slam* slam) {
@@ -152,12 +152,16 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source, settings.odometry.features.depth);
 
-  LiveView view(settings.sequence.dataset, source.camera().camera, run);
+  LiveView view(settings.sequence.dataset, settings.view,
+                source.camera().camera, run);
+  if (view.is_open()) {
+    std::fprintf(stderr, "view on     %s\n", view.address().c_str());
+  }
 
   const std::string stopped =
       TrackSource(&source, threads, &run, &output,
-                  [&view](const Frame& frame, const StopSignal& signal) {
-                    return view.Add(frame, signal);
+                  [&view](const Frame& frame, const auto& is_interrupted) {
+                    return view.Add(frame, is_interrupted);
                   });
   const double seconds = SecondsSince(start);
 

@@ -8,15 +8,21 @@
 namespace rgbd_pose {
 
 void SequenceRun::Add(const StreamedFrame& next) {
-  std::vector<TrackedFrame>& frames = results_.frames;
+  const std::vector<TrackedFrame>& frames = results_.frames;
   std::optional<Rigid3d> guess;
   if (inputs_.motion_guess != nullptr && !frames.empty()) {
     guess = MotionAlong(*inputs_.motion_guess, frames.back().timestamp,
                         next.frame.timestamp);
   }
-  frames.push_back(Track(next.frame, guess.has_value() ? &*guess : nullptr));
-  TrackedFrame& tracked = frames.back();
-  tracked.decode_ms = next.decode_ms;
+  Add(next.frame, guess.has_value() ? &*guess : nullptr);
+  results_.frames.back().decode_ms = next.decode_ms;
+}
+
+void SequenceRun::Add(const PreparedFrame& frame,
+                      const Rigid3d* cur_from_prev_guess) {
+  std::vector<TrackedFrame>& frames = results_.frames;
+  frames.push_back(Track(frame, cur_from_prev_guess));
+  const TrackedFrame& tracked = frames.back();
   if (tracked.previous_is_reference) {
     frames[frames.size() - 2].is_reference = true;
   }
@@ -26,12 +32,8 @@ void SequenceRun::Add(const StreamedFrame& next) {
 }
 
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
-  if (slam_ == nullptr) {
-    results_.trajectory = TrackedTrajectory(results_.frames);
-  } else {
-    slam_->Finish();
-    results_.trajectory = slam_->Path();
-  }
+  if (slam_ != nullptr) slam_->Finish();
+  results_.trajectory = Path();
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
@@ -42,6 +44,10 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
     }
   }
   return std::move(results_);
+}
+
+Trajectory SequenceRun::Path() const {
+  return slam_ == nullptr ? TrackedTrajectory(results_.frames) : slam_->Path();
 }
 
 std::string TrackAll(FrameSource* source, int threads,

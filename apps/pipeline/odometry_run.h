@@ -80,6 +80,10 @@ class SequenceRun {
 
   void Add(const StreamedFrame& next);
 
+  // The same for a frame from elsewhere. See Odometry::Track; `guess` may be
+  // null.
+  void Add(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess);
+
   // The odometry that tracks the frames and can prepare frames in advance.
   const Odometry& odometry() const {
     return slam_ == nullptr ? *odometry_ : slam_->odometry();
@@ -98,6 +102,9 @@ class SequenceRun {
   void set_damaged(const std::vector<std::string>& damaged) {
     results_.damaged = damaged;
   }
+
+  // The current poses of the frames that were not lost.
+  Trajectory Path() const;
 
   const RunInputs& inputs() const { return inputs_; }
 

@@ -46,12 +46,6 @@ void EachField(PickledBytes* bytes, Calibration& r) {
            r.displacement_px, r.passes, r.scale_from);
 }
 
-// Called after each frame without the GIL. Ctrl-C interrupts a calibration.
-void ThrowIfInterrupted(int /*pass*/, int /*done*/, int /*all*/) {
-  const py::gil_scoped_acquire gil;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 Calibration CalibrateFile(const py::object& path, const py::object& camera,
                           const std::string& source, const std::string& frames,
                           const py::object& associations,
@@ -76,7 +70,8 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
   settings.max_views = max_views;
   const ReleasedGil no_gil;
   return {CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
-                             settings, NumThreads(threads), ThrowIfInterrupted)
+                             settings, NumThreads(threads),
+                             [](int, int, int) { ThrowIfInterrupted(); })
               .result,
           sequence.camera};
 }

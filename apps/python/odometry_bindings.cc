@@ -5,16 +5,15 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
-#include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
+#include "apps/python/released_gil.h"
+#include "apps/python/shared_run.h"
 #include "apps/python/tracker_bindings.h"
-#include "core/evaluation/trajectory.h"
-#include "frontend/tracking/odometry.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace py = pybind11;
@@ -22,36 +21,18 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// An odometry for several threads. Calls wait for each other and therefore must
-// not hold the GIL. Keeps the results of all frames.
-class SharedOdometry {
+class SharedOdometry : public SharedRun {
  public:
   SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera)
-      : camera_(camera), odometry_(MakeOdometry(settings, camera.camera)) {}
+      : SharedRun(camera, SequenceRun(settings, camera.camera)) {}
 
-  const RgbdCamera& camera() const { return camera_; }
-
-  // Tracks the next frame. If time does not increase (see StampFrame), throws
-  // InputError and changes nothing.
+  // See SharedRun::Add.
   TrackedFrame Track(Frame frame, std::optional<double> timestamp,
                      const Rigid3d* guess) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    StampFrame(timestamp, frames_.empty() ? nullptr : &frames_.back(), &frame);
-    frames_.push_back(odometry_.Track(frame, guess));
-    return frames_.back();
+    Add(std::move(frame), timestamp, guess);
+    return run_.frames().back();
   }
-
-  // The poses of the frames that were not lost.
-  Trajectory trajectory() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return TrackedTrajectory(frames_);
-  }
-
- private:
-  const RgbdCamera camera_;
-  std::mutex mutex_;
-  Odometry odometry_;
-  std::vector<TrackedFrame> frames_;
 };
 
 std::string FrameInWords(const TrackedFrame& frame) {
@@ -134,11 +115,37 @@ void BindTrackedFrame(py::module_* module) {
   frame.def("__repr__", &FrameInWords).def(Pickled<TrackedFrame>());
 }
 
+void BindLivePage(py::module_* module) {
+  py::class_<LivePage> page(*module, "LivePage",
+                            "A page that shows a tracker live in a browser on "
+                            "this machine; in a notebook, a link.");
+  const py::call_guard<ReleasedGil> no_gil;
+  page.def_readonly("address", &LivePage::address,
+                    "such as 'http://127.0.0.1:40123/'");
+  page.def_property_readonly(
+      "is_stopped",
+      py::cpp_function(
+          [](const LivePage& self) { return self.tracker->IsStopped(); },
+          no_gil),
+      "whether the button Stop was pressed: track no more frames");
+  page.def(
+      "close", [](const LivePage& self) { self.tracker->CloseView(); }, no_gil,
+      "Ends the page; open browsers keep what they show.");
+  page.def("__repr__", [](const LivePage& self) {
+    return "LivePage('" + self.address + "')";
+  });
+  page.def("_repr_html_", [](const LivePage& self) {
+    return "<a href=\"" + self.address +
+           "\" target=\"_blank\">live page: " + self.address + "</a>";
+  });
+}
+
 }  // namespace
 
 void BindOdometry(py::module_* module) {
   BindRelativePose(module);
   BindTrackedFrame(module);
+  BindLivePage(module);
   BindTracker<SharedOdometry, OdometrySettings>(
       module, "Odometry", R"(
 Tracks a camera frame by frame against a reference frame. Calls of one object

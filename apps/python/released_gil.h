@@ -1,7 +1,7 @@
 #pragma once
 
-#include <Python.h>
 #include <cxxabi.h>
+#include <pybind11/pybind11.h>
 
 #include <chrono>
 #include <thread>
@@ -29,5 +29,11 @@ class ReleasedGil {
  private:
   PyThreadState* state_;
 };
+
+// For long work without the GIL: Ctrl-C raises KeyboardInterrupt.
+inline void ThrowIfInterrupted() {
+  const pybind11::gil_scoped_acquire gil;
+  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+}
 
 }  // namespace rgbd_pose

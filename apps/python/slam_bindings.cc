@@ -5,14 +5,15 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/pipeline/settings.h"
-#include "apps/pipeline/slam.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
+#include "apps/python/shared_run.h"
 #include "apps/python/tracker_bindings.h"
 #include "core/util/input_error.h"
 #include "frontend/map/map_folder.h"
@@ -59,28 +60,24 @@ std::vector<Setting> SettingTable(SharedSlamSettings* settings) {
   return table;
 }
 
-// A Slam for several threads, like SharedOdometry.
-class SharedSlam {
+class SharedSlam : public SharedRun {
  public:
   SharedSlam(const SharedSlamSettings& settings, const RgbdCamera& camera)
-      : camera_(camera),
-        slam_(settings.odometry, settings.slam, camera.camera) {}
-
-  const RgbdCamera& camera() const { return camera_; }
+      : SharedRun(camera, SequenceRun(settings.odometry, settings.slam,
+                                      camera.camera)) {}
 
   // Throws InputError if called after the first frame, for a folder without a
   // map and for a map of another camera.
   void Load(const std::string& folder, bool localise_only) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (last_.has_value() || is_finished_) {
+    if (!run_.frames().empty() || is_finished_) {
       throw InputError("load_map: maps must be loaded before the first frame");
     }
-    slam_.Load(LoadMap(folder), localise_only);
+    run_.slam()->Load(LoadMap(folder), localise_only);
     is_held_ = is_held_ || localise_only;
   }
 
-  // If time does not increase (see StampFrame) or after Finish, throws
-  // InputError and changes nothing.
+  // See SharedRun::Add. After Finish, throws InputError.
   FrameInMap Track(Frame frame, std::optional<double> timestamp,
                    const Rigid3d* guess) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -89,31 +86,27 @@ class SharedSlam {
           "track: finish() was called; save the map and load it in another "
           "Slam to continue");
     }
-    StampFrame(timestamp, last_.has_value() ? &*last_ : nullptr, &frame);
-    FrameInMap result(slam_.Track(frame, guess));
-    last_ = result;
-    return result;
+    Add(std::move(frame), timestamp, guess);
+    SlamFrame result = run_.slam_frames().back();
+    result.tracked.edges = run_.frames().back().edges;
+    return FrameInMap(result);
   }
 
-  // Waits for the mapping thread. A second call has no effect.
+  // Waits for the mapping thread and ends the live page. A second call has no
+  // effect.
   void Finish() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!is_finished_) slam_.Finish();
+    if (!is_finished_) run_.slam()->Finish();
     is_finished_ = true;
-  }
-
-  // The current poses of the frames that were not lost.
-  Trajectory trajectory() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return slam_.Path();
+    if (view_ != nullptr) view_->Finish("");
   }
 
   // The following functions throw InputError before Finish.
   std::vector<KeyframePose> Keyframes() {
     const auto lock = LockFinished("keyframes");
-    const std::vector<MotionMatrix> covariances = slam_.Covariances();
+    const std::vector<MotionMatrix> covariances = run_.slam()->Covariances();
     std::vector<KeyframePose> poses;
-    for (const Keyframe& keyframe : slam_.Map().keyframes) {
+    for (const Keyframe& keyframe : run_.slam()->Map().keyframes) {
       std::optional<MotionMatrix> covariance;
       if (!covariances.empty()) covariance = covariances[poses.size()];
       poses.push_back({keyframe.id, keyframe.segment, keyframe.images.timestamp,
@@ -124,7 +117,7 @@ class SharedSlam {
 
   std::vector<RelativePose> Edges() {
     const auto lock = LockFinished("edges");
-    return slam_.Map().edges;
+    return run_.slam()->Map().edges;
   }
 
   void Save(const std::string& folder) {
@@ -134,7 +127,7 @@ class SharedSlam {
           "save_map: localise_only does not change the map, so there is "
           "nothing to save");
     }
-    SaveMap(folder, slam_.Map());
+    SaveMap(folder, run_.slam()->Map());
   }
 
  private:
@@ -144,10 +137,6 @@ class SharedSlam {
     throw InputError(what + ": finish() must be called first");
   }
 
-  const RgbdCamera camera_;
-  std::mutex mutex_;
-  Slam slam_;
-  std::optional<TrackedFrame> last_;
   bool is_finished_ = false;
   bool is_held_ = false;
 };
@@ -223,8 +212,9 @@ threads wait for each other; objects do not share anything.
       "all\ncorrections so far");
   const py::call_guard<ReleasedGil> no_gil;
   slam.def("finish", &SharedSlam::Finish, no_gil,
-           "Waits for the background thread and corrects all poses once more. "
-           "No frame can\nbe tracked afterwards.");
+           "Waits for the background thread, corrects all poses once more and "
+           "ends the "
+           "live page. No frame can\nbe tracked afterwards.");
   slam.def("keyframes", &SharedSlam::Keyframes, no_gil,
            "After finish(): list of Keyframe, in the order of the map.");
   slam.def("edges", &SharedSlam::Edges, no_gil,

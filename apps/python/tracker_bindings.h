@@ -13,6 +13,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
+#include "apps/python/shared_run.h"
 #include "core/geometry/camera.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
@@ -33,8 +34,14 @@ Frame FrameFromArrays(const pybind11::object& image,
 void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
                 Frame* frame);
 
+// A tracker's live page for Python.
+struct LivePage {
+  SharedRun* tracker = nullptr;
+  std::string address;
+};
+
 // Defines what Odometry and Slam share: the constructor Type(Settings,
-// RgbdCamera), track, trajectory, save_trajectory.
+// RgbdCamera), track, trajectory, save_trajectory, view. Type: a SharedRun.
 template <typename Type, typename Settings>
 pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
                                    const std::string& help,
@@ -84,6 +91,10 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
     const ReleasedGil no_gil;
     return self->trajectory();
   };
+  const auto view = [name](Type* self, int port, double speed) {
+    const ReleasedGil no_gil;
+    return LivePage{self, self->OpenView(name, {true, port, speed})};
+  };
   const auto get = [=](Type* self) {
     return ArraysFromTrajectory(trajectory(self));
   };
@@ -94,6 +105,15 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
            py::arg("timestamp") = py::none(),
            py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0);
   type.def_property_readonly("trajectory", get, trajectory_help);
+  type.def(
+      "view", view,
+      "Opens a page on this machine that shows the run live, from its "
+      "first frame on, in\nplace of an earlier page. Returns its LivePage. "
+      "track() waits while the page's\nbutton Pause is active. port: 0: any "
+      "free one. speed: at most, as a multiple of\nreal time; 0: no limit. "
+      "Raises InputError if the port is taken, or if the module was\nbuilt "
+      "without cpp-httplib.",
+      py::arg("port") = 0, py::arg("speed") = 0.0, py::keep_alive<0, 1>());
   type.def("save_trajectory", save, "Writes the trajectory as TUM text.",
            py::arg("path"));
   return type;

@@ -61,26 +61,10 @@ class RunOutput {
   std::vector<double> depth_stamps_ms_;  // relative to colour, per frame
 };
 
-// While this object lives and --finish_on_signal is set, SIGINT and SIGTERM ask
-// the program to stop early and to keep its results; a second signal ends it at
-// once. Without the flag, signals end the program as usual. Ignored signals
-// stay ignored. Only one object may exist at a time.
-class StopSignal {
- public:
-  StopSignal();
-  // Restores the previous signal handlers.
-  ~StopSignal();
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-
-  // The name of the received signal, or empty.
-  std::string name() const;
-};
-
 // Called for each tracked frame. Returns why the run is to end, or an empty
-// string. A watcher that waits must check the signal.
-using FrameWatcher =
-    std::function<std::string(const Frame& frame, const StopSignal& signal)>;
+// string. A watcher that waits must check `is_interrupted`.
+using FrameWatcher = std::function<std::string(
+    const Frame& frame, const std::function<bool()>& is_interrupted)>;
 
 // Tracks the frames of a source, with a progress bar and warnings. `watcher`
 // may be empty. Returns why the run ended before the last frame (a signal, the

@@ -26,6 +26,39 @@ struct sigaction before[2];
 
 void Remember(int signal) { came = signal; }
 
+// While this object lives and --finish_on_signal is set, SIGINT and SIGTERM ask
+// the program to stop early and to keep its results; a second signal ends it at
+// once. Without the flag, signals end the program as usual. Ignored signals
+// stay ignored. Only one object may exist at a time.
+class StopSignal {
+ public:
+  StopSignal() {
+    came = 0;
+    struct sigaction action = {};
+    action.sa_handler = Remember;
+    // A second one ends the program.
+    action.sa_flags = SA_RESETHAND | SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < 2; ++i) {
+      sigaction(kSignals[i], nullptr, &before[i]);
+      if (FLAGS_finish_on_signal && before[i].sa_handler != SIG_IGN) {
+        sigaction(kSignals[i], &action, nullptr);
+      }
+    }
+  }
+  // Restores the previous signal handlers.
+  ~StopSignal() {
+    for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before[i], nullptr);
+  }
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  // The name of the received signal, or empty.
+  std::string name() const {
+    return came == SIGINT ? "SIGINT" : came == SIGTERM ? "SIGTERM" : "";
+  }
+};
+
 }  // namespace
 
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
@@ -42,7 +75,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
         }
         output->Add(frame, *run);
         bar.Update(static_cast<int>(run->frames().size()));
-        if (watcher) ended_by = watcher(frame, signal);
+        if (watcher) ended_by = watcher(frame, [] { return came != 0; });
         if (!signal.name().empty()) ended_by = signal.name();
         return ended_by.empty();
       });
@@ -75,28 +108,6 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
     return kExitStopped;
   }
   return kExitOk;
-}
-
-StopSignal::StopSignal() {
-  came = 0;
-  struct sigaction action = {};
-  action.sa_handler = Remember;
-  action.sa_flags = SA_RESETHAND | SA_RESTART;  // a second one ends the program
-  sigemptyset(&action.sa_mask);
-  for (int i = 0; i < 2; ++i) {
-    sigaction(kSignals[i], nullptr, &before[i]);
-    if (FLAGS_finish_on_signal && before[i].sa_handler != SIG_IGN) {
-      sigaction(kSignals[i], &action, nullptr);
-    }
-  }
-}
-
-StopSignal::~StopSignal() {
-  for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before[i], nullptr);
-}
-
-std::string StopSignal::name() const {
-  return came == SIGINT ? "SIGINT" : came == SIGTERM ? "SIGTERM" : "";
 }
 
 }  // namespace rgbd_pose

@@ -1,20 +1,9 @@
 #include "apps/view/live_view.h"
 
-#include <gflags/gflags.h>
-
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "core/util/input_error.h"
-
-DEFINE_bool(view, false,
-            "show the run live in a browser on this machine: path, map, images "
-            "and figures; prints the address of the page");
-DEFINE_int32(view_port, 0, "port of the live page; 0: any free port");
-DEFINE_double(view_speed, 0.0,
-              "with --view: maximum playback speed as a multiple of the "
-              "recording's own rate; 0: no limit");
 
 namespace rgbd_pose {
 namespace {
@@ -29,41 +18,59 @@ constexpr std::chrono::seconds kAlone(10);
 
 }  // namespace
 
-LiveView::LiveView(const std::string& dataset, const Camera& camera,
-                   const SequenceRun& run)
-    : camera_(camera), run_(run), map_(run.slam()) {
-  if (!(FLAGS_view_speed >= 0.0)) {
-    throw InputError("--view_speed must not be negative");
+std::vector<Setting> SettingTable(ViewSettings* settings) {
+  constexpr std::string_view kGroup = "View";
+  return {
+      {"view", kGroup,
+       "show the run live in a browser on this machine: path, map, images and "
+       "figures; prints the address of the page",
+       &settings->view},
+      {"view_port", kGroup, "port of the live page; 0: any free port",
+       &settings->view_port},
+      {"view_speed", kGroup,
+       "with --view: maximum playback speed as a multiple of the recording's "
+       "own rate; 0: no limit",
+       &settings->view_speed},
+  };
+}
+
+LiveView::LiveView(const std::string& title, const ViewSettings& settings,
+                   const Camera& camera, const SequenceRun& run)
+    : speed_(settings.view_speed),
+      camera_(camera),
+      run_(run),
+      map_(run.slam()) {
+  const int port = settings.view_port;
+  if (!(speed_ >= 0.0)) {
+    throw InputError("view_speed must not be negative");
   }
-  if (FLAGS_view_port < 0 || FLAGS_view_port > 65535) {
-    throw InputError("--view_port must be 0 (any free port) to 65535");
+  if (port < 0 || port > 65535) {
+    throw InputError("view_port must be 0 (any free port) to 65535");
   }
-  if (!FLAGS_view) {
-    if (FLAGS_view_speed > 0.0 || FLAGS_view_port > 0) {
-      throw InputError("--view_speed and --view_port need --view");
+  if (!settings.view) {
+    if (speed_ > 0.0 || port > 0) {
+      throw InputError("view_speed and view_port need view");
     }
     return;
   }
-  server_ = std::make_unique<ViewServer>(dataset, FLAGS_view_port, &state_);
-  std::fprintf(stderr, "view on     %s\n", server_->address().c_str());
+  server_ = std::make_unique<ViewServer>(title, port, &state_);
+  ViewNews news;
+  for (size_t i = 0; i < run.frames().size(); ++i) AddFrame(i, &news);
+  AddMap(/*has_moved=*/true, &news);
+  state_.Add(std::move(news));
 }
 
-std::string LiveView::Add(const Frame& frame, const StopSignal& signal) {
+std::string LiveView::Add(const Frame& frame,
+                          const std::function<bool()>& is_interrupted) {
   if (server_ == nullptr) return "";
-  const std::vector<TrackedFrame>& frames = run_.frames();
-  const TrackedFrame& tracked = frames.back();
   ViewNews news;
-  if (tracked.previous_is_reference) {
-    AddKeyframe(frames[frames.size() - 2], &news);
-  }
-  if (tracked.is_reference) AddKeyframe(tracked, &news);
-  news.frames.push_back(Describe(tracked));
+  AddFrame(run_.frames().size() - 1, &news);
   AddMap(!news.keyframes.empty(), &news);
   if (state_.readers() > 0) news.images = Show(frame);
   state_.Add(std::move(news));
-  KeepPace(signal);
-  WaitWhilePaused(signal);
-  return state_.is_stopped() ? "stop button of the live page" : "";
+  KeepPace(is_interrupted);
+  WaitWhilePaused(is_interrupted);
+  return is_stopped() ? "stop button of the live page" : "";
 }
 
 void LiveView::Finish(const std::string& results) {
@@ -75,17 +82,23 @@ void LiveView::Finish(const std::string& results) {
   server_.reset();
 }
 
-ViewFrame LiveView::Describe(const TrackedFrame& tracked) const {
+void LiveView::AddFrame(size_t index, ViewNews* news) {
+  const TrackedFrame& tracked = run_.frames()[index];
+  if (tracked.previous_is_reference) {
+    AddKeyframe(run_.frames()[index - 1], news);
+  }
+  if (tracked.is_reference) AddKeyframe(tracked, news);
   ViewFrame shown = {tracked, std::nullopt, {}};
   shown.edges = std::vector<RelativePose>();  // frees them
-  if (tracked.status == TrackingStatus::kLost) return shown;
-  int keyframe = tracked.index;
-  if (!tracked.is_reference && tracked.reference != -1) {
-    keyframe = tracked.reference;
-    shown.keyframe_from_cam = tracked.cur_from_reference.Inverse();
+  if (tracked.status != TrackingStatus::kLost) {
+    int keyframe = tracked.index;
+    if (!tracked.is_reference && tracked.reference != -1) {
+      keyframe = tracked.reference;
+      shown.keyframe_from_cam = tracked.cur_from_reference.Inverse();
+    }
+    shown.keyframe = map_ == nullptr ? keyframe : map_->MapId(keyframe);
   }
-  shown.keyframe = map_ == nullptr ? keyframe : map_->MapId(keyframe);
-  return shown;
+  news->frames.push_back(std::move(shown));
 }
 
 void LiveView::AddKeyframe(const TrackedFrame& tracked, ViewNews* news) {
@@ -122,17 +135,17 @@ ViewImages LiveView::Show(Frame frame) const {
 }
 
 // A late frame delays all later ones: the lost time is not caught up.
-void LiveView::KeepPace(const StopSignal& signal) {
-  if (FLAGS_view_speed <= 0.0) return;
+void LiveView::KeepPace(const std::function<bool()>& is_interrupted) {
+  if (speed_ <= 0.0) return;
   const std::vector<TrackedFrame>& frames = run_.frames();
   if (frames.size() > 1) {
     const std::chrono::duration<double> wait(
         (frames.back().timestamp - frames[frames.size() - 2].timestamp) /
-        FLAGS_view_speed);
+        speed_);
     due_ += std::chrono::duration_cast<Clock::duration>(wait);
   }
   due_ = std::max(due_, Clock::now());
-  while (Clock::now() < due_ && signal.name().empty() && !state_.is_stopped() &&
+  while (Clock::now() < due_ && !is_interrupted() && !state_.is_stopped() &&
          !state_.is_paused()) {
     state_.WaitForControl(std::min(
         kSlice, std::chrono::duration_cast<milliseconds>(due_ - Clock::now()) +
@@ -140,9 +153,9 @@ void LiveView::KeepPace(const StopSignal& signal) {
   }
 }
 
-void LiveView::WaitWhilePaused(const StopSignal& signal) {
+void LiveView::WaitWhilePaused(const std::function<bool()>& is_interrupted) {
   Clock::time_point last_seen = Clock::now();
-  while (state_.is_paused() && !state_.is_stopped() && signal.name().empty()) {
+  while (state_.is_paused() && !state_.is_stopped() && !is_interrupted()) {
     if (state_.readers() > 0) last_seen = Clock::now();
     if (Clock::now() - last_seen > kAlone) state_.Pause(false);
     state_.WaitForControl(kSlice);

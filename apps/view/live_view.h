@@ -1,41 +1,64 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/pipeline/odometry_run.h"
-#include "apps/results/run_output.h"
+#include "apps/pipeline/settings.h"
 #include "apps/view/view_server.h"
 #include "apps/view/view_state.h"
 
 namespace rgbd_pose {
 
-// A page that shows a run while it is running, if requested by --view.
+// Settings of the live page, named like the flags of the programs.
+struct ViewSettings {
+  bool view = false;        // whether there is a page
+  int view_port = 0;        // 0: any free port
+  double view_speed = 0.0;  // at most, as a multiple of real time; 0: no limit
+};
+
+std::vector<Setting> SettingTable(ViewSettings* settings);
+
+// A page that shows a run while it is running, if requested.
 class LiveView {
  public:
-  // Prints the address of the page on stderr. `run` must outlive this object.
-  // Throws InputError for invalid flags.
-  LiveView(const std::string& dataset, const Camera& camera,
-           const SequenceRun& run);
+  // Shows the frames that the run has tracked so far. `run` must outlive this
+  // object. Throws InputError for invalid settings.
+  LiveView(const std::string& title, const ViewSettings& settings,
+           const Camera& camera, const SequenceRun& run);
 
-  // Call after a frame was tracked. Shows the frame and waits if --view_speed
-  // or a button requests it. Returns why the run is to end, or an empty string.
-  std::string Add(const Frame& frame, const StopSignal& signal);
+  // The address of the page, if there is one.
+  bool is_open() const { return server_ != nullptr; }
+  const std::string& address() const { return server_->address(); }
 
-  // Call after the last frame. `results` is the location of the results.
+  // Whether the stop button was pressed.
+  bool is_stopped() const { return state_.is_stopped(); }
+
+  // Call after a frame was tracked. Shows the frame and waits if the speed or
+  // a button requests it, until `is_interrupted`. Returns why the run is to
+  // end, or an empty string.
+  std::string Add(const Frame& frame,
+                  const std::function<bool()>& is_interrupted);
+
+  // Call after the last frame. `results` is the location of the results, or
+  // empty. Ends the page.
   void Finish(const std::string& results);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  ViewFrame Describe(const TrackedFrame& tracked) const;
+  void AddFrame(size_t index, ViewNews* news);
   void AddKeyframe(const TrackedFrame& tracked, ViewNews* news);
   void AddMap(bool has_moved, ViewNews* news);
   ViewImages Show(Frame frame) const;
-  void KeepPace(const StopSignal& signal);
-  void WaitWhilePaused(const StopSignal& signal);
+  void KeepPace(const std::function<bool()>& is_interrupted);
+  void WaitWhilePaused(const std::function<bool()>& is_interrupted);
 
+  const double speed_;
   const Camera camera_;
   const SequenceRun& run_;
   const Slam* const map_;  // null: the run has none

@@ -78,7 +78,7 @@ class ViewServer::Impl {
             : server_.bind_to_port(kHost, port) ? port
                                                 : -1;
     if (port_ <= 0) {
-      throw InputError("--view_port=" + std::to_string(port) +
+      throw InputError("view_port=" + std::to_string(port) +
                        ": cannot listen on this port; another program may use "
                        "it (0: any free port)");
     }
@@ -205,7 +205,7 @@ class ViewServer::Impl {};
 
 ViewServer::ViewServer(const std::string&, int, ViewState*) {
   throw InputError(
-      "--view: built without cpp-httplib; install libcpp-httplib-dev "
+      "no live page: built without cpp-httplib; install libcpp-httplib-dev "
       "(scripts/install_dependencies) and build again");
 }
 

@@ -20,6 +20,7 @@ __all__ = [
     "Frame",
     "InputError",
     "Keyframe",
+    "LivePage",
     "MotionEstimate",
     "Odometry",
     "Recording",

@@ -103,7 +103,9 @@ source.addEventListener('end', event => {
   ended = true;
   source.close();
   const folder = JSON.parse(event.data);
-  say('finished', `Results are in ${folder}; open ${folder}/report.html for the report.`);
+  say('finished', folder
+      ? `Results are in ${folder}; open ${folder}/report.html for the report.`
+      : 'No more frames are tracked.');
   showButtons();
   publish();
 });
