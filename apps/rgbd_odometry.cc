@@ -7,35 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/report/report_page.h"
-#include "apps/results/run_output.h"
+#include "apps/results/run_tracking.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
-#include "apps/view/live_view.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
 
-DEFINE_int32(threads, 0,
-             "threads that read images ahead and track; 0: one for each core; "
-             "the result does not depend on it");
 DEFINE_bool(validate_only, false,
             "only read every image and print the speed; needs no --output");
-DEFINE_bool(report, true, "write OUTPUT/report.html");
 
 namespace rgbd_pose {
 namespace {
 
-struct ProgramSettings {
-  SequenceSettings sequence;
-  OdometrySettings odometry;
-  RunOutputSettings output;
-  ViewSettings view;
-};
-
-ProgramInfo Info(ProgramSettings* settings) {
+ProgramInfo Info(RunSettings* settings) {
   return {"rgbd_odometry",
           "estimates the motion of an RGB-D camera along a sequence.",
           "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
@@ -72,7 +58,7 @@ int ValidateOnly(const Sequence& sequence, int threads) {
   return kExitOk;
 }
 
-int Main(const ProgramSettings& settings, const ProgramInfo& info) {
+int Main(const RunSettings& settings, const ProgramInfo& info) {
   const auto start = std::chrono::steady_clock::now();
   RequireFlag("dataset", settings.sequence.dataset);
   if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);
@@ -81,42 +67,11 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   // Check the input before the work starts and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
   Sequence sequence = OpenSequence(settings.sequence, keep_color);
-  FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
-  SequenceRun run(settings.odometry, source.camera().camera, sequence.inputs);
-  RequireMeshFrames(settings.output, settings.sequence.dataset);
-  RunOutput output(settings.output, source, settings.odometry.features.depth);
-
-  LiveView view(settings.sequence.dataset, settings.view,
-                source.camera().camera, run);
-  if (view.is_open()) {
-    std::fprintf(stderr, "view on     %s\n", view.address().c_str());
-  }
-
-  const std::string stopped =
-      TrackSource(&source, threads, &run, &output,
-                  [&view](const Frame& frame, const auto& is_interrupted) {
-                    return view.Add(frame, is_interrupted);
-                  });
-  const double seconds = SecondsSince(start);
-
-  const RunResults results = run.Finish(sequence.GroundTruth());
-  std::string text =
-      output.Write(results, threads, seconds, sequence.GroundTruth(),
-                   settings.sequence.dataset, info, {{"stopped", stopped}});
-  std::string no_report;
-  if (FLAGS_report) {
-    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
-                         &no_report);
-  }
-  output.folder().Publish();
-  text += SaveMesh(settings.output, threads);
-  std::printf("%sresults in  %s\n", text.c_str(),
-              settings.output.output.c_str());
-  view.Finish(settings.output.output);
-  return ExitCodeOf(info.name, results, settings.output.output, stopped,
-                    no_report);
+  SequenceRun run(settings.odometry, sequence.source->camera().camera,
+                  sequence.inputs);
+  return TrackAndWrite(settings, info, start, &sequence, &run);
 }
 
 }  // namespace

@@ -83,15 +83,6 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options);
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
 
-// Throws InputError before a run if SaveMesh could not read its frames again,
-// for example those of a live camera.
-void RequireMeshFrames(const RunOutputSettings& settings,
-                       const std::string& dataset);
-
-// Writes the requested mesh, if any, of a run that has just ended. Returns the
-// text that the program prints.
-std::string SaveMesh(const RunOutputSettings& settings, int threads);
-
 const std::vector<ExportFormat>& ExportFormats();
 
 // Opens the recording of a run to read its frames again, with colour. Throws

@@ -77,21 +77,4 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
                 mesh.triangles.size(), views.size(), options.output.c_str());
 }
 
-void RequireMeshFrames(const RunOutputSettings& settings,
-                       const std::string& dataset) {
-  if (settings.save_mesh.empty() || std::filesystem::exists(dataset)) return;
-  throw InputError(
-      "--save_mesh: the mesh needs the frames a second time, but '" + dataset +
-      "' is not a file or folder; record it with rgbd_convert first");
-}
-
-std::string SaveMesh(const RunOutputSettings& settings, int threads) {
-  if (settings.save_mesh.empty()) return "";
-  ExportOptions options;
-  options.output = settings.save_mesh;
-  options.voxel = settings.voxel;
-  options.threads = threads;
-  return ExportMesh(FinishedRun(settings.output), options);
-}
-
 }  // namespace rgbd_pose

@@ -1,9 +1,8 @@
 #include "apps/report/report_page.h"
 
-#include <system_error>
+#include <filesystem>
 
 #include "apps/report/report_data.h"
-#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -72,22 +71,6 @@ std::string WriteReport(std::string_view kind, const std::string& folder) {
   std::string path = (std::filesystem::path(folder) / "report.html").string();
   WriteFileAtomically(path, ReportPage(kind, data));
   return path;
-}
-
-std::string WriteRunPage(const std::filesystem::path& staging_dir,
-                         const std::string& out, std::string* why_not) {
-  if (!HasReportLibrary()) {
-    return std::string("report in   ") + kNoReportLibrary + "\n";
-  }
-  try {
-    WriteReport("run", staging_dir.string());
-    return "report in   " + out + "/report.html\n";
-  } catch (const InputError& error) {
-    *why_not = error.what();
-    std::error_code ignored;
-    std::filesystem::remove(staging_dir / "report.html", ignored);
-    return "";
-  }
 }
 
 }  // namespace rgbd_pose

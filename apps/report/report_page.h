@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -58,11 +57,5 @@ std::string CalibrationPage(const CalibrationResult& result,
 // Writes report.html for a "run", "batch" or "comparison" from the files in its
 // folder; returns its path. Throws InputError for missing or broken files.
 std::string WriteReport(std::string_view kind, const std::string& folder);
-
-// Writes report.html into the unpublished folder of a run; `out` is its final
-// folder. Returns the text that the program prints. If the disk is full, the
-// partial page is removed, `why_not` says so, and all other results stay.
-std::string WriteRunPage(const std::filesystem::path& staging_dir,
-                         const std::string& out, std::string* why_not);
 
 }  // namespace rgbd_pose

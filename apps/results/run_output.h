@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -60,24 +59,5 @@ class RunOutput {
   RunFolder folder_;
   std::vector<double> depth_stamps_ms_;  // relative to colour, per frame
 };
-
-// Called for each tracked frame. Returns why the run is to end, or an empty
-// string. A watcher that waits must check `is_interrupted`.
-using FrameWatcher = std::function<std::string(
-    const Frame& frame, const std::function<bool()>& is_interrupted)>;
-
-// Tracks the frames of a source, with a progress bar and warnings. `watcher`
-// may be empty. Returns why the run ended before the last frame (a signal, the
-// watcher, a source that fails, too many damaged frames), or an empty string.
-// Throws InputError if no frame was read.
-std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
-                        RunOutput* output, const FrameWatcher& watcher = {});
-
-// Returns the exit code after everything is written, and prints one line on
-// stderr unless it is kExitOk. `stopped`: why the run ended before the last
-// frame; `no_report`: why there is no page; both may be empty.
-int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const std::string& stopped,
-               const std::string& no_report);
 
 }  // namespace rgbd_pose

@@ -1,14 +1,27 @@
+#include "apps/results/run_tracking.h"
+
 #include <gflags/gflags.h>
 
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
-#include "apps/pipeline/sequence.h"
-#include "apps/results/run_output.h"
-#include "apps/shell/program.h"
+#include "apps/export/export_format.h"
+#include "apps/report/report_page.h"
+#include "apps/results/calibration_output.h"
+#include "apps/results/slam_output.h"
 #include "apps/shell/progress_bar.h"
+#include "core/util/input_error.h"
+#include "frontend/files/camera_file.h"
+#include "frontend/files/depth_noise_file.h"
 #include "frontend/frame/depth_lookup.h"
+#include "frontend/map/map_folder.h"
 
+DEFINE_int32(threads, 0,
+             "threads that read images ahead and track; 0: one for each core; "
+             "the result does not depend on it");
+DEFINE_bool(report, true, "write OUTPUT/report.html");
 DEFINE_bool(finish_on_signal, true,
             "on SIGINT (Ctrl-C) or SIGTERM stop early and keep the results; a "
             "second signal ends the program at once");
@@ -59,31 +72,65 @@ class StopSignal {
   }
 };
 
-}  // namespace
-
-std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
-                        RunOutput* output, const FrameWatcher& watcher) {
-  const StopSignal signal;
-  const size_t size = source->timestamps().size();
-  std::string ended_by;
-  ProgressBar bar("tracking", static_cast<int>(size));
-  const std::string stopped =
-      TrackAll(source, threads, {run}, [&](const Frame& frame) {
-        if (run->frames().size() == 1) {
-          Warn({source->camera().camera.SanityWarning(),
-                DepthScaleWarning(frame)});
-        }
-        output->Add(frame, *run);
-        bar.Update(static_cast<int>(run->frames().size()));
-        if (watcher) ended_by = watcher(frame, [] { return came != 0; });
-        if (!signal.name().empty()) ended_by = signal.name();
-        return ended_by.empty();
-      });
-  Warn(DroppedFrames(*source, run->damaged()));
-  if (!stopped.empty()) return stopped;
-  return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
+// Writes the calibration files and returns the text that the program prints.
+// Afterwards the flags are those of a run with the camera found.
+std::string WriteFound(const RecordingCalibration& found,
+                       const RunSettings& settings, const RunFolder& output) {
+  constexpr char kFile[] = "camera.yaml";
+  const CalibrationResult& result = found.result;
+  if (result.is_accepted) {
+    output.WriteFile(kFile,
+                     FormatCameraFile(result.camera, settings.sequence.camera));
+    const std::filesystem::path folder(settings.output.output);
+    gflags::SetCommandLineOption("camera", (folder / kFile).c_str());
+    gflags::SetCommandLineOption("depth_scale", "0");
+    gflags::SetCommandLineOption("calibrate", "false");
+  }
+  if (result.noise.has_value()) {
+    output.WriteFile("depth_noise.yaml",
+                     FormatDepthNoiseFile(result.noise->model));
+  }
+  if (FLAGS_report) {
+    output.WriteFile("calibration.html", CalibrationPage(result, found.path));
+  }
+  return FormatCalibrationSummary(result) +
+         (result.is_accepted ? "tracked with the new camera:\n"
+                             : "tracked with the first camera:\n");
 }
 
+void WriteMapTables(const SequenceRun& run, const RunFolder& output) {
+  const Slam& slam = *run.slam();
+  output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  output.WriteFile("trajectory_online.txt",
+                   FormatOnlineTrajectory(slam, run.slam_frames()));
+  output.WriteFile("trajectory_odometry.txt",
+                   FormatTrajectory(SmoothPath(run.slam_frames())));
+  output.WriteFile("keyframes.csv",
+                   FormatKeyframesCsv(slam.Map(), slam.Covariances()));
+  output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
+}
+
+// Writes report.html into the unpublished folder; `out` is its final folder.
+// Returns the text that the program prints. If the disk is full, the partial
+// page is removed, `why_not` says so, and all other results stay.
+std::string WriteRunPage(const std::filesystem::path& staging_dir,
+                         const std::string& out, std::string* why_not) {
+  if (!HasReportLibrary()) {
+    return std::string("report in   ") + kNoReportLibrary + "\n";
+  }
+  try {
+    WriteReport("run", staging_dir.string());
+    return "report in   " + out + "/report.html\n";
+  } catch (const InputError& error) {
+    *why_not = error.what();
+    std::error_code ignored;
+    std::filesystem::remove(staging_dir / "report.html", ignored);
+    return "";
+  }
+}
+
+// Returns the exit code and prints one line on stderr unless it is kExitOk.
+// `stopped`: why the run ended early; `no_report`: why there is no page.
 int ExitCodeOf(const std::string& program, const RunResults& results,
                const std::string& folder, const std::string& stopped,
                const std::string& no_report) {
@@ -108,6 +155,93 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
     return kExitStopped;
   }
   return kExitOk;
+}
+
+}  // namespace
+
+std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
+                        RunOutput* output, LiveView* view) {
+  const StopSignal signal;
+  const size_t size = source->timestamps().size();
+  std::string ended_by;
+  ProgressBar bar("tracking", static_cast<int>(size));
+  const std::string stopped =
+      TrackAll(source, threads, {run}, [&](const Frame& frame) {
+        if (run->frames().size() == 1) {
+          Warn({source->camera().camera.SanityWarning(),
+                DepthScaleWarning(frame)});
+        }
+        output->Add(frame, *run);
+        bar.Update(static_cast<int>(run->frames().size()));
+        ended_by = view->Add(frame, [] { return came != 0; });
+        if (!signal.name().empty()) ended_by = signal.name();
+        return ended_by.empty();
+      });
+  Warn(DroppedFrames(*source, run->damaged()));
+  if (!stopped.empty()) return stopped;
+  return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
+}
+
+int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
+                  std::chrono::steady_clock::time_point start,
+                  Sequence* sequence, SequenceRun* run,
+                  const std::optional<RecordingCalibration>& found) {
+  const int threads = NumThreads(FLAGS_threads);
+  const std::string& dataset = settings.sequence.dataset;
+  const std::string& folder = settings.output.output;
+  const std::string& mesh = settings.output.save_mesh;
+  if (!mesh.empty() && !std::filesystem::exists(dataset)) {
+    throw InputError(
+        "--save_mesh: the mesh needs the frames a second time, but '" +
+        dataset +
+        "' is not a file or folder; record it with rgbd_convert first");
+  }
+  FrameSource& source = *sequence->source;
+  RunOutput output(settings.output, source, settings.odometry.features.depth);
+  LiveView view(dataset, settings.view, source.camera().camera, *run);
+  if (view.is_open()) {
+    std::fprintf(stderr, "view on     %s\n", view.address().c_str());
+  }
+  const std::string stopped =
+      TrackSource(&source, threads, run, &output, &view);
+  const double seconds = SecondsSince(start);
+
+  const Trajectory* const truth = sequence->GroundTruth();
+  const RunResults results = run->Finish(truth);
+  std::string text;
+  nlohmann::json more = {{"stopped", stopped}};
+  if (found.has_value()) {
+    text = WriteFound(*found, settings, output.folder());
+    more["calibration"] = CalibrationToJson(found->result);
+  }
+  const Slam* const slam = run->slam();
+  if (slam != nullptr) more["slam"] = SlamToJson(*slam, run->slam_frames());
+  text += output.Write(results, threads, seconds, truth, dataset, info, more);
+  if (slam != nullptr) {
+    Warn({SlamWarning(more["slam"])});
+    text += FormatSlamSummary(more["slam"]);
+    WriteMapTables(*run, output.folder());
+  }
+  std::string no_report;
+  if (FLAGS_report) {
+    text += WriteRunPage(output.folder().staging_dir(), folder, &no_report);
+  }
+  output.folder().Publish();
+  if (!mesh.empty()) {
+    ExportOptions options;
+    options.output = mesh;
+    options.voxel = settings.output.voxel;
+    options.threads = threads;
+    text += ExportMesh(FinishedRun(folder), options);
+  }
+  // If the map cannot be saved, the results stay.
+  if (!settings.save_map.empty()) {
+    SaveMap(settings.save_map, slam->Map());
+    text += "map in      " + settings.save_map + "\n";
+  }
+  std::printf("%sresults in  %s\n", text.c_str(), folder.c_str());
+  view.Finish(folder);
+  return ExitCodeOf(info.name, results, folder, stopped, no_report);
 }
 
 }  // namespace rgbd_pose

@@ -1,3 +1,5 @@
+#include "apps/results/run_tracking.h"
+
 #include <glog/logging.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +8,6 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "apps/results/run_output.h"
 #include "core/util/input_error.h"
 #include "tests/support/temp_folder.h"
 
@@ -62,7 +63,8 @@ class RunTrackingTest : public testing::Test {
     RunOutputSettings files;
     files.output = folder_ / "run";
     RunOutput output(files, source, settings.features.depth);
-    std::string stopped = TrackSource(&source, 1, &run, &output);
+    LiveView view("", {}, source.camera().camera, run);
+    std::string stopped = TrackSource(&source, 1, &run, &output, &view);
     frames_ = static_cast<int>(run.frames().size());
     return stopped;
   }

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <gflags/gflags_declare.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "apps/calibration/calibration_run.h"
+#include "apps/pipeline/sequence.h"
+#include "apps/results/run_output.h"
+#include "apps/shell/program.h"
+#include "apps/view/live_view.h"
+
+// --threads of rgbd_odometry and rgbd_slam, which also have --report and
+// --finish_on_signal.
+DECLARE_int32(threads);
+
+namespace rgbd_pose {
+
+// The settings that rgbd_odometry and rgbd_slam share.
+struct RunSettings {
+  SequenceSettings sequence;
+  OdometrySettings odometry;
+  RunOutputSettings output;
+  ViewSettings view;
+  std::string save_map;  // folder; empty: the map, if any, is not saved
+};
+
+// Tracks the frames of a source, with a progress bar and warnings. Returns why
+// the run ended before the last frame (a signal, the stop button of the page, a
+// source that fails, too many damaged frames), or an empty string. Throws
+// InputError if no frame was read.
+std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
+                        RunOutput* output, LiveView* view);
+
+// The rest of a program after its sequence was opened: tracks the frames,
+// writes, shows and prints all results. `start` is that of the program, `found`
+// the calibration of the camera, if there was one. Returns the exit code.
+int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
+                  std::chrono::steady_clock::time_point start,
+                  Sequence* sequence, SequenceRun* run,
+                  const std::optional<RecordingCalibration>& found = {});
+
+}  // namespace rgbd_pose
