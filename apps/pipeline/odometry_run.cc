@@ -47,7 +47,13 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
 }
 
 Trajectory SequenceRun::Path() const {
-  return slam_ == nullptr ? TrackedTrajectory(results_.frames) : slam_->Path();
+  if (slam_ != nullptr) return slam_->Path();
+  Trajectory path;
+  for (const TrackedFrame& frame : results_.frames) {
+    if (frame.status == TrackingStatus::kLost) continue;
+    path.push_back({frame.timestamp, frame.world_from_cam});
+  }
+  return path;
 }
 
 std::string TrackAll(FrameSource* source, int threads,
@@ -81,15 +87,6 @@ RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
   result.ok_frames = Judge(ok_edges, times, truth, noise);
   result.edges = Judge(edges, times, truth, noise);
   return result;
-}
-
-Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {
-  Trajectory trajectory;
-  for (const TrackedFrame& frame : frames) {
-    if (frame.status == TrackingStatus::kLost) continue;
-    trajectory.push_back({frame.timestamp, frame.world_from_cam});
-  }
-  return trajectory;
 }
 
 void ResidualHistogram::Add(const MotionEstimate& estimate) {

@@ -123,9 +123,6 @@ class SequenceRun {
   RunResults results_;
 };
 
-// The poses of all frames that were not lost.
-Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
-
 // Sends all frames of a source through one or more runs with the same frontend.
 // Each frame is read and prepared once, in advance, by `threads` >= 1 threads.
 // `on_frame` is called for each tracked frame and returns whether to continue;

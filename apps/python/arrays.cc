@@ -11,17 +11,15 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// Tolerance for the orthonormality of rotation matrices.
+// Of the length of a quaternion, as for TUM text, and of R R^T.
 constexpr double kMaxRotationError = 0.01;
-
-constexpr double kMaxQuaternionError = 0.01;  // as for TUM text
 
 Rigid3d PoseFromRow(const NumberArray& row, size_t i,
                     const std::string& where) {
   const Eigen::Vector3d translation(row(i, 0), row(i, 1), row(i, 2));
   const Eigen::Quaterniond rotation(row(i, 6), row(i, 3), row(i, 4), row(i, 5));
   if (!translation.allFinite() ||
-      !(std::abs(rotation.norm() - 1.0) <= kMaxQuaternionError)) {
+      !(std::abs(rotation.norm() - 1.0) <= kMaxRotationError)) {
     throw InputError(where +
                      ": is not a pose; it needs tx ty tz qx qy qz qw, finite "
                      "and with a quaternion of unit length");

@@ -230,13 +230,10 @@ EstimateResult MakeResult(MotionEstimate estimate, const RowMatches& matches,
   const std::vector<size_t>& rows = matches.rows;
   std::vector<uint8_t> inliers =
       AtRows<bool, uint8_t>(estimate.is_inlier, rows, size);
-  const size_t num_rejected = matches.matches.rejected();
-  if (num_rejected > 0) {
-    estimate.weights = AtRows(estimate.weights, rows, size);
-    estimate.residual_norms = AtRows(estimate.residual_norms, rows, size);
-    estimate.residual_degrees = AtRows(estimate.residual_degrees, rows, size);
-  }
-  return {std::move(estimate), std::move(inliers), num_rejected};
+  estimate.weights = AtRows(estimate.weights, rows, size);
+  estimate.residual_norms = AtRows(estimate.residual_norms, rows, size);
+  estimate.residual_degrees = AtRows(estimate.residual_degrees, rows, size);
+  return {std::move(estimate), std::move(inliers), matches.matches.rejected()};
 }
 
 // Defines a function that takes matches as two arrays of rows.

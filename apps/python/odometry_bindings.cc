@@ -12,7 +12,6 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
-#include "apps/python/shared_run.h"
 #include "apps/python/tracker_bindings.h"
 #include "frontend/tracking/tracked_frame.h"
 

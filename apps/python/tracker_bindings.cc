@@ -91,19 +91,45 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   return frame;
 }
 
-void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
-                Frame* frame) {
-  frame->index = last == nullptr ? 0 : last->index + 1;
-  frame->timestamp = timestamp.value_or(
+std::string SharedRun::OpenView(const std::string& title,
+                                const ViewSettings& settings) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  view_.reset();  // frees its port
+  view_ = std::make_unique<LiveView>(title, settings, camera_.camera, run_);
+  return view_->address();
+}
+
+void SharedRun::CloseView() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (view_ != nullptr) view_->Finish("");
+}
+
+bool SharedRun::IsStopped() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return view_ != nullptr && view_->is_stopped();
+}
+
+void SharedRun::Add(Frame frame, std::optional<double> timestamp,
+                    const Rigid3d* guess) {
+  const TrackedFrame* const last =
+      run_.frames().empty() ? nullptr : &run_.frames().back();
+  frame.index = last == nullptr ? 0 : last->index + 1;
+  frame.timestamp = timestamp.value_or(
       last == nullptr ? 0.0 : last->timestamp + 1.0 / kDefaultFrameRate);
-  if (!std::isfinite(frame->timestamp)) {
+  if (!std::isfinite(frame.timestamp)) {
     throw InputError("timestamp: is not a finite number of seconds");
   }
-  if (last != nullptr && frame->timestamp <= last->timestamp) {
-    throw InputError("timestamp: " + std::to_string(frame->timestamp) +
+  if (last != nullptr && frame.timestamp <= last->timestamp) {
+    throw InputError("timestamp: " + std::to_string(frame.timestamp) +
                      " s is not after that of the previous frame; frames must "
                      "be in the order of time");
   }
+  run_.Add(PreparedFrame(frame), guess);
+  if (view_ == nullptr) return;
+  view_->Add(frame, [] {
+    ThrowIfInterrupted();
+    return false;
+  });
 }
 
 }  // namespace rgbd_pose

@@ -4,21 +4,23 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
-#include "apps/python/shared_run.h"
+#include "apps/view/live_view.h"
+#include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/frame/frame.h"
-#include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
 
@@ -28,11 +30,40 @@ namespace rgbd_pose {
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
 
-// Sets the number and the time of a frame. Frames without a timestamp are 1/30
-// s apart. `last` is the previous frame, or null. Throws InputError if time
-// does not increase.
-void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
-                Frame* frame);
+// A run for several threads. Calls wait for each other and therefore must not
+// hold the GIL. Keeps the results of all frames.
+class SharedRun {
+ public:
+  const RgbdCamera& camera() const { return camera_; }
+
+  // The current poses of the frames that were not lost.
+  Trajectory trajectory() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return run_.Path();
+  }
+
+  // Opens a page that shows the run, in place of an earlier one, and returns
+  // its address. Throws InputError for invalid settings.
+  std::string OpenView(const std::string& title, const ViewSettings& settings);
+  // Ends the page; its last news remain in open browsers.
+  void CloseView();
+  // Whether the stop button of the page was pressed.
+  bool IsStopped();
+
+ protected:
+  SharedRun(const RgbdCamera& camera, SequenceRun run)
+      : camera_(camera), run_(std::move(run)) {}
+
+  // Tracks the next frame; those without a timestamp are 1/30 s apart. If time
+  // does not increase, throws InputError and changes nothing. Call with mutex_
+  // locked.
+  void Add(Frame frame, std::optional<double> timestamp, const Rigid3d* guess);
+
+  const RgbdCamera camera_;
+  std::mutex mutex_;
+  SequenceRun run_;
+  std::unique_ptr<LiveView> view_;  // null: no page
+};
 
 // A tracker's live page for Python.
 struct LivePage {

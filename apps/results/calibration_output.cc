@@ -9,13 +9,9 @@
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
-namespace {
 
-using Status = CalibratedParameter::Status;
-
-}  // namespace
-
-const char* ToString(Status status) {
+const char* ToString(CalibratedParameter::Status status) {
+  using Status = CalibratedParameter::Status;
   return status == Status::kFixed          ? "fixed"
          : status == Status::kUndetermined ? "not determined"
                                            : "determined";
@@ -55,8 +51,8 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibrationParameter& row = kCalibrationParameters[k];
     const CalibratedParameter& parameter = result.parameters[k];
-    if (parameter.status == Status::kFixed) continue;
-    if (parameter.status == Status::kUndetermined) {
+    if (parameter.status == CalibratedParameter::Status::kFixed) continue;
+    if (parameter.status == CalibratedParameter::Status::kUndetermined) {
       undetermined.emplace_back(row.name);
       continue;
     }

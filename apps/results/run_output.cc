@@ -61,25 +61,6 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
   }
 }
 
-// `stamps_ms`: of depth relative to colour, per frame.
-nlohmann::json DepthStampsToJson(const std::vector<double>& stamps_ms) {
-  if (stamps_ms.empty()) return nullptr;
-  return {{"least", Quantile(stamps_ms, 0.0)},
-          {"median", Median(stamps_ms)},
-          {"most", Quantile(stamps_ms, 1.0)}};
-}
-
-nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {
-  return {{"matches", residuals.matches},
-          {"norm_bin", residuals.kNormBin},
-          {"norm_counts", residuals.norms},
-          {"norms_above", residuals.norms_above},
-          {"weight_bin", residuals.kWeightBin},
-          {"weight_counts", residuals.weights},
-          {"weights_zero", residuals.weights_zero},
-          {"degrees_counts", residuals.degrees}};
-}
-
 double PeakMemoryMb() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
@@ -150,19 +131,33 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   const nlohmann::json summary = Summarise(results.frames, threads, seconds);
   const nlohmann::json jumps = FindJumps(results.frames);
   std::string text = FormatSummary(summary) + FormatJumps(jumps);
-  nlohmann::json metrics = {
-      {"program", info.name},
-      {"dataset", dataset},
-      {"unmatched_color", source_.unmatched_color()},
-      {"dropped_frames", source_.dropped()},
-      {"damaged_frames", results.damaged.size()},
-      {"remarks", source_.remarks()},
-      {"peak_rss_mb", PeakMemoryMb()},
-      {"run", summary},
-      {"jumps", jumps},
-      {"shutter", ShutterToJson(source_.camera())},
-      {"depth_stamp_ms", DepthStampsToJson(depth_stamps_ms_)},
-      {"residuals", ResidualsToJson(results.residuals)}};
+  nlohmann::json depth_stamp_ms;
+  if (!depth_stamps_ms_.empty()) {
+    depth_stamp_ms = {{"least", Quantile(depth_stamps_ms_, 0.0)},
+                      {"median", Median(depth_stamps_ms_)},
+                      {"most", Quantile(depth_stamps_ms_, 1.0)}};
+  }
+  const ResidualHistogram& residuals = results.residuals;
+  nlohmann::json metrics = {{"program", info.name},
+                            {"dataset", dataset},
+                            {"unmatched_color", source_.unmatched_color()},
+                            {"dropped_frames", source_.dropped()},
+                            {"damaged_frames", results.damaged.size()},
+                            {"remarks", source_.remarks()},
+                            {"peak_rss_mb", PeakMemoryMb()},
+                            {"run", summary},
+                            {"jumps", jumps},
+                            {"shutter", ShutterToJson(source_.camera())},
+                            {"depth_stamp_ms", depth_stamp_ms},
+                            {"residuals",
+                             {{"matches", residuals.matches},
+                              {"norm_bin", residuals.kNormBin},
+                              {"norm_counts", residuals.norms},
+                              {"norms_above", residuals.norms_above},
+                              {"weight_bin", residuals.kWeightBin},
+                              {"weight_counts", residuals.weights},
+                              {"weights_zero", residuals.weights_zero},
+                              {"degrees_counts", residuals.degrees}}}};
   metrics.update(more);
   Rigid3d shown_from_world;
   if (!results.no_evaluation.empty()) {

@@ -12,6 +12,7 @@
 #include "apps/results/calibration_output.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/progress_bar.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
@@ -134,25 +135,26 @@ std::string WriteRunPage(const std::filesystem::path& staging_dir,
 int ExitCodeOf(const std::string& program, const RunResults& results,
                const std::string& folder, const std::string& stopped,
                const std::string& no_report) {
+  const auto end_with = [&](ExitCode code, const std::string& why) {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), why.c_str());
+    return code;
+  };
   if (!no_report.empty()) {
-    std::fprintf(stderr, "%s: %s; all other results are in %s\n",
-                 program.c_str(), no_report.c_str(), folder.c_str());
-    return kExitBadInput;
+    return end_with(kExitBadInput,
+                    no_report + "; all other results are in " + folder);
   }
   if (results.TrackedShare() < kMinTrackedShare) {
-    std::fprintf(stderr,
-                 "%s: only %.1f %% of the frames were tracked; see the reasons "
-                 "in %s/frames.csv\n",
-                 program.c_str(), 100.0 * results.TrackedShare(),
-                 folder.c_str());
-    return kExitTrackingFailed;
+    return end_with(
+        kExitTrackingFailed,
+        Format("only %.1f %% of the frames were tracked; see the reasons in ",
+               100.0 * results.TrackedShare()) +
+            folder + "/frames.csv");
   }
   if (!stopped.empty()) {
-    std::fprintf(stderr,
-                 "%s: stopped after %zu frames (%s); their results are in %s\n",
-                 program.c_str(), results.frames.size(), stopped.c_str(),
-                 folder.c_str());
-    return kExitStopped;
+    return end_with(
+        kExitStopped,
+        Format("stopped after %zu frames (", results.frames.size()) + stopped +
+            "); their results are in " + folder);
   }
   return kExitOk;
 }

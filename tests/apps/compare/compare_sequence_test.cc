@@ -29,8 +29,9 @@ LossRun MakeRun(const std::string& loss, int frames, double scale) {
     frame.status = i == 1 ? TrackingStatus::kLost : TrackingStatus::kOk;
     frame.world_from_cam = At(scale * i);
     run.frames.push_back(frame);
+    if (i == 1) continue;
+    run.trajectory.push_back({frame.timestamp, frame.world_from_cam});
   }
-  run.trajectory = TrackedTrajectory(run.frames);
   return run;
 }
 
