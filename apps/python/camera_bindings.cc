@@ -46,12 +46,7 @@ RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
   result.color_shutter = {color_time_offset, color_readout};
   result.depth_shutter = {depth_time_offset, depth_readout};
   Camera& camera = result.camera;
-  camera.width = width;
-  camera.height = height;
-  camera.fx = fx;
-  camera.fy = fy;
-  camera.cx = cx;
-  camera.cy = cy;
+  camera = {width, height, fx, fy, cx, cy};
   const bool is_equidistant = lens == "equidistant";
   if (!is_equidistant && lens != "rational") {
     throw InputError("Camera: lens '" + lens +
