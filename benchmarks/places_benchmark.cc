@@ -34,7 +34,7 @@ const cv::Mat& Seen() {
     cv::Mat all;
     for (int i = 0; i < kViews; ++i) {
       all.push_back(DescribeKeyframe(PreparedFrame(dataset.Read(i)),
-                                     options.camera.camera, {})
+                                     {options.camera.camera})
                         .described.descriptors);
     }
     return all;

@@ -63,25 +63,31 @@ class TukeyFormula {
 
 using TukeyLoss = BatchLossOf<TukeyFormula>;
 
-// Fair's loss: R(s) = 2 c^2 (q - ln(1 + q)), q = sqrt(s) / c. R''(0) is minus
-// infinity. A huge but finite value is returned instead; with it, s R''(s) is 0
-// at s = 0.
-class FairLoss final : public ceres::LossFunction {
+// The loss of a formula that fills in R, R' and R'' at s for the width c.
+template <void (*formula)(double s, double c, double rho[3])>
+class LossOf final : public ceres::LossFunction {
  public:
-  explicit FairLoss(double width) : width_(width) {}
+  explicit LossOf(double width) : width_(width) {}
 
   void Evaluate(double s, double rho[3]) const override {
-    constexpr double kTiny = std::numeric_limits<double>::min();
-    const double q = std::sqrt(s) / width_;
-    const double weight = 1.0 / (1.0 + q);
-    rho[0] = 2.0 * width_ * width_ * (q - std::log1p(q));
-    rho[1] = weight;
-    rho[2] = -0.5 * weight * weight / (width_ * std::sqrt(std::max(s, kTiny)));
+    formula(s, width_, rho);
   }
 
  private:
   double width_;
 };
+
+// Fair's loss: R(s) = 2 c^2 (q - ln(1 + q)), q = sqrt(s) / c. R''(0) is minus
+// infinity. A huge but finite value is returned instead; with it, s R''(s) is 0
+// at s = 0.
+inline void Fair(double s, double c, double rho[3]) {
+  constexpr double kTiny = std::numeric_limits<double>::min();
+  const double q = std::sqrt(s) / c;
+  const double weight = 1.0 / (1.0 + q);
+  rho[0] = 2.0 * c * c * (q - std::log1p(q));
+  rho[1] = weight;
+  rho[2] = -0.5 * weight * weight / (c * std::sqrt(std::max(s, kTiny)));
+}
 
 // Geman and McClure's loss: R(s) = s / (1 + s/c^2). Zhang's version has c = 1.
 class GemanMcClureLoss final : public ceres::LossFunction {
@@ -100,20 +106,12 @@ class GemanMcClureLoss final : public ceres::LossFunction {
 };
 
 // Welsch's loss: R(s) = c^2 (1 - exp(-s/c^2)).
-class WelschLoss final : public ceres::LossFunction {
- public:
-  explicit WelschLoss(double width) : width2_(width * width) {}
-
-  void Evaluate(double s, double rho[3]) const override {
-    const double q = s / width2_;
-    rho[0] = -width2_ * std::expm1(-q);
-    rho[1] = std::exp(-q);
-    rho[2] = -rho[1] / width2_;
-  }
-
- private:
-  double width2_;
-};
+inline void Welsch(double s, double c, double rho[3]) {
+  const double q = s / (c * c);
+  rho[0] = -(c * c) * std::expm1(-q);
+  rho[1] = std::exp(-q);
+  rho[2] = -rho[1] / (c * c);
+}
 
 // |x|^v for 1 <= v < 2 (Zhang's L1 and Lp): R(s) = (2/v) c^2 (s / c^2)^(v/2).
 // The width c only scales it; Zhang's versions have c = 1. As the slope at 0 is
@@ -145,20 +143,12 @@ class PowerLoss final : public ceres::LossFunction {
 // Barron's loss (A General and Adaptive Robust Loss Function, CVPR 2019) of the
 // shape -1, half-way between Cauchy (0) and Geman-McClure (-2), scaled to
 // R'(0) = 1: R(s) = 6 c^2 (1 - (1 + s / (3 c^2))^(-1/2)).
-class BarronLoss final : public ceres::LossFunction {
- public:
-  explicit BarronLoss(double width) : width2_(width * width) {}
-
-  void Evaluate(double s, double rho[3]) const override {
-    const double q = s / (width2_ * 3.0);
-    const double log = std::log1p(q);
-    rho[0] = -6.0 * width2_ * std::expm1(-0.5 * log);
-    rho[1] = std::exp(-1.5 * log);
-    rho[2] = -0.5 * rho[1] / (width2_ * (1.0 + q));
-  }
-
- private:
-  double width2_;
-};
+inline void Barron(double s, double c, double rho[3]) {
+  const double q = s / (c * c * 3.0);
+  const double log = std::log1p(q);
+  rho[0] = -6.0 * (c * c) * std::expm1(-0.5 * log);
+  rho[1] = std::exp(-1.5 * log);
+  rho[2] = -0.5 * rho[1] / (c * c * (1.0 + q));
+}
 
 }  // namespace rgbd_pose

@@ -33,7 +33,7 @@ void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
     const MeasuredInverseDepth& depth = data.depth;
     information += by_depth;
     if (depth.pixel_value == 0.0) return;
-    const double expected = MeasuredFrom<double>(w, theta, data.motion, depth);
+    const double expected = MeasuredFrom<double>(w, theta, data);
     // Moves the depth along the plane to the position of the landmark.
     const double there = depth.plane.dot(ray);
     const double pixel =

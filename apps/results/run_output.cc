@@ -10,11 +10,10 @@
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
 #include "core/util/text_file.h"
-#include "frontend/features/match_overlay.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/fusion/mesh_file.h"
-#include "frontend/tracking/residual_image.h"
+#include "frontend/tracking/tracking_pictures.h"
 
 namespace rgbd_pose {
 namespace {

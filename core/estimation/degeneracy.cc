@@ -114,10 +114,8 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   }
   const MotionVector means = MeanUnits(hessian);
   // Scaled by what each parameter would be known to if it were the only one.
-  MotionVector unit;
-  for (int i = 0; i < 6; ++i) {
-    unit[i] = hessian(i, i) > 0.0 ? 1.0 / std::sqrt(hessian(i, i)) : 1.0;
-  }
+  MotionVector unit = hessian.diagonal();
+  for (double& value : unit) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
   const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
       unit.asDiagonal() * hessian * unit.asDiagonal());
   if (!(eigen.eigenvalues()[0] > kSingular)) {

@@ -185,8 +185,8 @@ GraphSolution PoseGraph::Solve() {
 void PoseGraph::AddEdge(const RelativePose& edge,
                         const ceres::LossFunction* loss) {
   // A covariance that is not invertible has no finite root either.
-  graph_.edges.push_back({edge.ref, edge.cur, edge.cur_from_ref,
-                          SqrtInformation(edge.covariance.inverse()), loss});
+  graph_.edges.push_back(
+      {edge, SqrtInformation(edge.covariance.inverse()), loss});
 }
 
 std::vector<MotionMatrix> PoseGraph::MarginalCovariances(

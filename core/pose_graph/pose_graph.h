@@ -18,10 +18,7 @@ struct GraphTerms {
     bool is_fixed = false;   // stays where it is
   };
   // A measured motion.
-  struct Edge {
-    int ref = 0;                                // number of the reference pose
-    int cur = 0;                                // number of the other pose
-    Rigid3d cur_from_ref;                       // as it was measured
+  struct Edge : RelativePose {
     MotionMatrix root;                          // see SqrtInformation
     const ceres::LossFunction* loss = nullptr;  // null: least squares
   };

@@ -14,18 +14,7 @@ template <typename Residual>
 using AssociationOf = decltype(Residual::kAssociation);
 
 // The MotionCost of a residual type over matches: binding, sums and the three
-// assemblies. A residual type is stateless and defines (docs/add_a_cost.md)
-//
-//   kName, kRows, kDegreesOfFreedom, kColumns, kIsWhitened
-//   Pack(input, i, columns) -> usable             for match i
-//   Residual(motion pose, columns, r)             for any scalars
-//
-// and, where they apply,
-//
-//   Jacobian(motion derivatives, columns, r, J)   default: autodiff_jacobian.h
-//   kAssociation, Degrees(columns), InlierLimit(columns)    see MotionCost
-//   kPointTerms, PointTerms                       see point_sums.h
-//   kIsPrior           packs the prior, if there is one, as i = 0
+// assemblies. docs/add_a_cost.md lists what a residual type defines.
 template <typename Type>
 class CostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;

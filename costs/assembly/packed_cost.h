@@ -16,7 +16,7 @@
 
 namespace rgbd_pose {
 
-// Detect optional functions of a residual type (cost_of.h).
+// Detect optional functions of a residual type.
 template <typename Residual>
 using DegreesOf = decltype(&Residual::Degrees);
 template <typename Residual>

@@ -91,21 +91,6 @@ struct SquaredNormsKernel {
   }
 };
 
-// Fills in the weights rho' of a tile, 0 for padding; returns the sum of rho.
-template <typename Residual, int W>
-[[gnu::always_inline]] inline double WeighTile(const MotionDerivatives& motion,
-                                               const PackedColumns& columns,
-                                               const ceres::LossFunction* loss,
-                                               int begin, int end,
-                                               double* weights) {
-  alignas(64) double squared_norms[kTile + kMaxLanes];
-  SquaredNormsKernel<Residual>::template Run<W>(motion, columns, begin, end,
-                                                squared_norms);
-  const double cost = Weigh(loss, squared_norms, end - begin, weights);
-  for (int i = end - begin; i % W != 0; ++i) weights[i] = 0.0;
-  return cost;
-}
-
 // Number of matches per chunk. Sums are taken over each chunk and then over the
 // chunks, so the number of threads does not change a bit of the result.
 constexpr int kChunk = 32 * kTile;
@@ -228,9 +213,12 @@ struct SumKernel {
     double cost = 0.0;
     for (int begin = first; begin < last; begin += kTile) {
       const int end = std::min(begin + kTile, last);
-      alignas(64) double weights[kTile + kMaxLanes];
-      cost +=
-          WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
+      alignas(64) double squared_norms[kTile + kMaxLanes];
+      alignas(64) double weights[kTile + kMaxLanes];  // rho', 0 for padding
+      SquaredNormsKernel<Residual>::template Run<W>(motion, columns, begin, end,
+                                                    squared_norms);
+      cost += Weigh(loss, squared_norms, end - begin, weights);
+      for (int i = end - begin; i % W != 0; ++i) weights[i] = 0.0;
       for (int i = begin; i < end; i += W) {
         D m[Residual::kColumns], weight;
         columns.Load(i, m);

@@ -176,9 +176,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   const int size = static_cast<int>(equations.hessian.rows());
   Eigen::MatrixXd known_before = Eigen::MatrixXd::Zero(size, size);
   const int y_at = equations.PlaceOfY();
-  const auto place_of = [](int keyframe) {
-    return ReducedCameraSystem::PlaceOfPose(keyframe);
-  };
+  const auto place_of = ReducedCameraSystem::PlaceOfPose;
   for (const KnownDistance& known : views.distances) {
     const KnownDistanceError error(poses[known.a], poses[known.b],
                                    state.theta[kDepthFactor], known);

@@ -51,63 +51,6 @@ T DepthLag(const T* theta, double row) {
          row * (theta[kDepthReadout] - theta[kColorReadout]);
 }
 
-// Predicts the measured inverse depth for an inverse depth w, seen at a pixel
-// when its colour row is exposed. The depth camera is displaced by omega, v
-// (the registration minus the camera's motion until depth is exposed). It sees
-// the plane m of the same surface, w m . X = 1, at the same pixel at
-//
-//   w' = w (1 + omega . (m x r) - w (m . v))
-//
-// to first order, and measures factor * (w' - offset).
-template <typename T>
-T MeasuredFrom(const T& w, const T* theta, const RowMotion& motion,
-               const MeasuredInverseDepth& at) {
-  const Eigen::Vector3d lever = at.plane.cross(at.ray);
-  const T lag = DepthLag(theta, motion.row);
-  T turned(0.0), shifted(0.0);
-  for (int i = 0; i < 3; ++i) {
-    turned +=
-        lever[i] * (theta[kRotationX + i] - lag * motion.twist.angular[i] -
-                    at.undone_rotation[i]);
-    shifted +=
-        at.plane[i] * (theta[kTranslationX + i] - lag * motion.twist.linear[i] -
-                       at.undone_translation[i]);
-  }
-  return theta[kDepthFactor] *
-         (w * (1.0 + turned - w * shifted) - theta[kInverseDepth]);
-}
-
-// The same with derivatives: returns the one by w; J gets those by theta.
-inline double MeasuredFrom(double w, const double* theta,
-                           const RowMotion& motion,
-                           const MeasuredInverseDepth& at, double* value,
-                           double* J) {
-  const Eigen::Vector3d lever = at.plane.cross(at.ray);
-  const Eigen::Map<const Eigen::Vector3d> rotation(theta + kRotationX);
-  const Eigen::Map<const Eigen::Vector3d> translation(theta + kTranslationX);
-  const Twist& twist = motion.twist;
-  const double lag = DepthLag(theta, motion.row);
-  const double factor = theta[kDepthFactor];
-  const double turned =
-      lever.dot(rotation - lag * twist.angular - at.undone_rotation);
-  const double shifted =
-      at.plane.dot(translation - lag * twist.linear - at.undone_translation);
-  const double seen = w * (1.0 + turned - w * shifted) - theta[kInverseDepth];
-  *value = factor * seen;
-  for (int k = 0; k < kCalibrationSize; ++k) J[k] = 0.0;
-  J[kInverseDepth] = -factor;
-  J[kDepthFactor] = seen;
-  J[kDepthTime] =
-      factor * w * (w * at.plane.dot(twist.linear) - lever.dot(twist.angular));
-  J[kDepthReadout] = motion.row * J[kDepthTime];
-  J[kColorReadout] = -J[kDepthReadout];
-  for (int i = 0; i < 3; ++i) {
-    J[kRotationX + i] = factor * w * lever[i];
-    J[kTranslationX + i] = -factor * w * w * at.plane[i];
-  }
-  return factor * (1.0 + turned - 2.0 * w * shifted);
-}
-
 // The derivatives of a residual with kRows rows.
 template <int kRows>
 struct LandmarkDerivatives {
@@ -127,6 +70,65 @@ struct LandmarkData {
   double inverse_sigma_px = 0.0;          // of u and v
   MeasuredInverseDepth depth;             // of the view, or the anchor's
 };
+
+// Predicts the measured inverse depth for an inverse depth w, seen at a pixel
+// when its colour row is exposed. The depth camera is displaced by omega, v
+// (the registration minus the camera's motion until depth is exposed). It sees
+// the plane m of the same surface, w m . X = 1, at the same pixel at
+//
+//   w' = w (1 + omega . (m x r) - w (m . v))
+//
+// to first order, and measures factor * (w' - offset).
+template <typename T>
+T MeasuredFrom(const T& w, const T* theta, const LandmarkData& data) {
+  const MeasuredInverseDepth& at = data.depth;
+  const Twist& twist = data.motion.twist;
+  const Eigen::Vector3d lever = at.plane.cross(at.ray);
+  const T lag = DepthLag(theta, data.motion.row);
+  T turned(0.0), shifted(0.0);
+  for (int i = 0; i < 3; ++i) {
+    turned += lever[i] * (theta[kRotationX + i] - lag * twist.angular[i] -
+                          at.undone_rotation[i]);
+    shifted += at.plane[i] * (theta[kTranslationX + i] - lag * twist.linear[i] -
+                              at.undone_translation[i]);
+  }
+  return theta[kDepthFactor] *
+         (w * (1.0 + turned - w * shifted) - theta[kInverseDepth]);
+}
+
+// The whitened error of the depth that MeasuredFrom predicts, with derivatives:
+// returns the one by w, not whitened; sets those by theta.
+inline double DepthError(double w, const double* theta,
+                         const LandmarkData& data, double* r,
+                         LandmarkDerivatives<1>* derivatives) {
+  const MeasuredInverseDepth& at = data.depth;
+  const Eigen::Vector3d lever = at.plane.cross(at.ray);
+  const Eigen::Map<const Eigen::Vector3d> rotation(theta + kRotationX);
+  const Eigen::Map<const Eigen::Vector3d> translation(theta + kTranslationX);
+  const Twist& twist = data.motion.twist;
+  const double lag = DepthLag(theta, data.motion.row);
+  const double factor = theta[kDepthFactor];
+  const double turned =
+      lever.dot(rotation - lag * twist.angular - at.undone_rotation);
+  const double shifted =
+      at.plane.dot(translation - lag * twist.linear - at.undone_translation);
+  const double seen = w * (1.0 + turned - w * shifted) - theta[kInverseDepth];
+  r[0] = (factor * seen - at.value) * at.inverse_sigma;
+  auto& J = derivatives->theta;
+  J.setZero();
+  J[kInverseDepth] = -factor;
+  J[kDepthFactor] = seen;
+  J[kDepthTime] =
+      factor * w * (w * at.plane.dot(twist.linear) - lever.dot(twist.angular));
+  J[kDepthReadout] = data.motion.row * J[kDepthTime];
+  J[kColorReadout] = -J[kDepthReadout];
+  for (int i = 0; i < 3; ++i) {
+    J[kRotationX + i] = factor * w * lever[i];
+    J[kTranslationX + i] = -factor * w * w * at.plane[i];
+  }
+  J *= at.inverse_sigma;
+  return factor * (1.0 + turned - 2.0 * w * shifted);
+}
 
 // A landmark in the axes of a view when its row is exposed, times d. On the ray
 // r = (x, y, 1) of the anchor's pixel, whose row is exposed t_a after the
@@ -278,8 +280,7 @@ struct LandmarkDepth {
                        const RotationAndCenter<T>& view, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
     const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
-    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.motion, data.depth) -
-            data.depth.value) *
+    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data) - data.depth.value) *
            data.depth.inverse_sigma;
   }
 
@@ -289,16 +290,12 @@ struct LandmarkDepth {
                        LandmarkDerivatives<1>* J) {
     const InViewDerivatives moved(anchor, view, d, theta, data);
     const double z = 1.0 / moved.Y[2];
-    double value;
-    const double by_w = MeasuredFrom(d * z, theta, data.motion, data.depth,
-                                     &value, J->theta.data());
+    const double by_w = DepthError(d * z, theta, data, r, J);
     const double weight = data.depth.inverse_sigma;
-    r[0] = (value - data.depth.value) * weight;
     const double by_z = -by_w * d * z * z * weight;
     J->anchor = by_z * moved.anchor.row(2);
     J->view = by_z * moved.view.row(2);
     J->inverse_depth[0] = by_z * moved.inverse_depth[2] + by_w * z * weight;
-    J->theta *= weight;
     J->theta.leftCols<kLensSize>() += by_z * moved.lens.row(2);
     J->theta[kColorReadout] += by_z * moved.color_readout[2];
   }
@@ -313,8 +310,7 @@ struct AnchorDepth {
   static void Residual(const RotationAndCenter<T>& /*anchor*/,
                        const RotationAndCenter<T>& /*view*/, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
-    r[0] = (MeasuredFrom<T>(d, theta, data.motion, data.depth) -
-            data.depth.value) *
+    r[0] = (MeasuredFrom<T>(d, theta, data) - data.depth.value) *
            data.depth.inverse_sigma;
   }
 
@@ -322,14 +318,10 @@ struct AnchorDepth {
                        const MotionDerivatives& /*view*/, double d,
                        const double* theta, const LandmarkData& data, double* r,
                        LandmarkDerivatives<1>* J) {
-    double value;
-    const double by_w = MeasuredFrom(d, theta, data.motion, data.depth, &value,
-                                     J->theta.data());
-    r[0] = (value - data.depth.value) * data.depth.inverse_sigma;
     J->anchor.setZero();
     J->view.setZero();
-    J->inverse_depth[0] = by_w * data.depth.inverse_sigma;
-    J->theta *= data.depth.inverse_sigma;
+    J->inverse_depth[0] =
+        DepthError(d, theta, data, r, J) * data.depth.inverse_sigma;
   }
 };
 

@@ -57,7 +57,7 @@ struct ForwardError {
 // multiplies, for any scalars; the weights follow the columns of ForwardError.
 template <typename Type, int rows>
 struct WeightedForwardError {
-  // Constants that every residual type has, see costs/assembly/cost_of.h.
+  // Constants that every residual type has, see docs/add_a_cost.md.
   static constexpr int kRows = rows;
   static constexpr int kDegreesOfFreedom = rows;
   static constexpr bool kIsWhitened = true;

@@ -95,20 +95,6 @@ struct ImageError {
   }
 };
 
-// Covariance of the projection of a point of `source` into the target frame,
-// from the noise of that point alone.
-inline Eigen::Matrix3d ProjectedCovariance(const Camera& camera,
-                                           const Observation& source,
-                                           const Eigen::Matrix3d& R,
-                                           const Eigen::Vector3d& moved) {
-  const Projection<double> projection(moved.data());
-  Eigen::Matrix3d P;
-  for (int k = 0; k < 3; ++k) {
-    projection.Derivative(R.col(k).data(), P.col(k).data());
-  }
-  return P * PointCovariance(camera, source) * P.transpose();
-}
-
 // Writes the columns of an ImageError: a point of `source`, which must have
 // depth, against its measurement `target`. The covariance is the sum of the
 // covariances of the measurement and of the projected point at
@@ -121,9 +107,15 @@ bool PackImageError(const Correspondences& matches,
                     double repeats, double* columns) {
   const Camera& camera = matches.camera();
   const Eigen::Vector3d point = matches.Point(source);
-  Eigen::Matrix3d covariance = ProjectedCovariance(
-      camera, source, target_from_source.rotation.toRotationMatrix(),
-      target_from_source * point);
+  const Eigen::Matrix3d R = target_from_source.rotation.toRotationMatrix();
+  const Eigen::Vector3d moved = target_from_source * point;
+  const Projection<double> projection(moved.data());
+  Eigen::Matrix3d P;  // of the projection by the point
+  for (int k = 0; k < 3; ++k) {
+    projection.Derivative(R.col(k).data(), P.col(k).data());
+  }
+  Eigen::Matrix3d covariance =
+      P * PointCovariance(camera, source) * P.transpose();
   const bool has_depth = target.depth > 0.0;
   const double w = has_depth ? 1.0 / target.depth : 0.0;
   Eigen::Vector3d measured = camera.Ray(target.u, target.v);

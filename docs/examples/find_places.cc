@@ -18,7 +18,7 @@ int main() {
   std::vector<rgbd_pose::PlaceFeatures> places;
   for (int i = 0; i < sequence.size(); ++i) {
     const rgbd_pose::PreparedFrame frame(sequence.Read(i));
-    places.push_back(rgbd_pose::DescribeKeyframe(frame, camera, {}));
+    places.push_back(rgbd_pose::DescribeKeyframe(frame, {camera}));
     const cv::Mat& descriptors = places[i].described.descriptors;
     const auto is_old = [i](int keyframe) { return keyframe < i - 5; };
     for (const auto& [old, score] : index.Query(descriptors, 3, is_old)) {

@@ -7,6 +7,7 @@
 #include "core/util/units.h"
 #include "frontend/bags/bag_topics.h"
 #include "frontend/bags/ros_image.h"
+#include "frontend/bags/transform_tree.h"
 
 namespace rgbd_pose {
 namespace {
@@ -124,7 +125,7 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
   TransformTree tree;
   for (const std::string& topic : topics.transforms) {
     for (const BagMessage& message : bag->First(topic, kManyMessages)) {
-      AddTransforms(*bag, message, &tree);
+      tree.Add(ReadMessage(*bag, message, ReadRosTransforms));
     }
   }
   std::optional<Rigid3d> fixed = tree.Fixed(color.frame_id, depth.frame_id);

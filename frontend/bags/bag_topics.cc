@@ -1,7 +1,6 @@
 #include "frontend/bags/bag_topics.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -15,13 +14,6 @@ constexpr char kCameraInfo[] = "sensor_msgs/CameraInfo";
 
 bool IsImage(const BagTopic& topic) {
   return topic.type == kImage || topic.type == kCompressedImage;
-}
-
-std::string LowerCase(std::string text) {
-  for (char& c : text) {
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return text;
 }
 
 std::string Parent(const std::string& topic) {
@@ -59,7 +51,7 @@ Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   const std::vector<BagMessage> first = bag->First(topic.name, 1);
   if (first.empty()) return fitness;
   const RosImage image = ReadImageOf(*bag, first.front());
-  const std::string name = LowerCase(topic.name);
+  const std::string name = cv::toLowerCase(topic.name);
   const int if_raw = topic.type == kImage ? 1 : 0;
   fitness.encoding = image.encoding;
   RosImageUse use = UseOfEncoding(fitness.encoding);
@@ -145,7 +137,7 @@ std::string Existing(const BagReader& bag, const std::string& name,
 }  // namespace
 
 bool IsCalledRegistered(const std::string& topic) {
-  const std::string name = LowerCase(topic);
+  const std::string name = cv::toLowerCase(topic);
   return Contains(name, "regist") || Contains(name, "align") ||
          Contains(name, "depth_to_color") || Contains(name, "depth_to_rgb");
 }
@@ -154,16 +146,6 @@ RosImage ReadImageOf(const BagReader& bag, const BagMessage& message) {
   const bool is_raw = bag.FindTopic(message.topic)->type == kImage;
   return ReadMessage(bag, message,
                      is_raw ? ReadRosImage : ReadRosCompressedImage);
-}
-
-void AddTransforms(const BagReader& bag, const BagMessage& message,
-                   TransformTree* tree) {
-  for (const RosTransform& transform :
-       ReadMessage(bag, message, ReadRosTransforms)) {
-    tree->Add(std::string(transform.header.frame_id),
-              std::string(transform.child_frame_id), transform.header.stamp,
-              transform.parent_from_child);
-  }
 }
 
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {

@@ -7,7 +7,6 @@
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/ros_image.h"
 #include "frontend/bags/ros_messages.h"
-#include "frontend/bags/transform_tree.h"
 #include "frontend/files/camera_file.h"
 
 namespace rgbd_pose {
@@ -35,10 +34,6 @@ inline bool Contains(const std::string& name, const char* part) {
 
 // Parses a message of an image topic, compressed or not.
 RosImage ReadImageOf(const BagReader& bag, const BagMessage& message);
-
-// Adds the transforms of a message of /tf or /tf_static to a tree.
-void AddTransforms(const BagReader& bag, const BagMessage& message,
-                   TransformTree* tree);
 
 // Whether the name of a depth topic says that it is registered to colour.
 bool IsCalledRegistered(const std::string& topic);

@@ -37,8 +37,6 @@ constexpr Encoding kEncodings[] = {
     {"32FC1", RosImageUse::kMetricDepth, CV_32FC1, -1, -1},
 };
 
-bool IsCompressed(const RosImage& image) { return image.width == 0; }
-
 // An example of compressed depth is "16UC1; compressedDepth png". Other images
 // have formats such as "jpeg" or "rgb8; jpeg compressed bgr8".
 bool IsCompressedDepth(std::string_view format) {
@@ -153,7 +151,7 @@ RosImageUse UseOfEncoding(std::string_view encoding) {
 
 cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
                       cv::Mat* color) {
-  if (IsCompressed(image)) {
+  if (image.width == 0) {  // compressed
     if (IsCompressedDepth(image.encoding)) {
       throw Unreadable(name, image.encoding, "colour");
     }
@@ -170,7 +168,7 @@ cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
 
 cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
                        double depth_scale) {
-  if (IsCompressed(image)) {
+  if (image.width == 0) {  // compressed
     return IsCompressedDepth(image.encoding)
                ? DecodeCompressedDepth(image, name, depth_scale)
                : DecodeDepthImage(FileIn(image.data, name), name);

@@ -5,24 +5,26 @@
 
 namespace rgbd_pose {
 
-void TransformTree::Add(const std::string& parent, const std::string& child,
-                        double stamp, const Rigid3d& parent_from_child) {
-  Edge& edge = edges_[child];
-  if (edge.parent != parent) edge = Edge{parent, false, {}};
-  Trajectory& samples = edge.samples;
-  if (!edge.moves && !samples.empty() &&
-      samples.front().world_from_cam == parent_from_child) {
-    if (samples.size() == 1) samples.push_back(samples.front());
-    samples.front().timestamp = std::min(samples.front().timestamp, stamp);
-    samples.back().timestamp = std::max(samples.back().timestamp, stamp);
-    return;
+void TransformTree::Add(const std::vector<RosTransform>& transforms) {
+  for (const auto& [header, child, parent_from_child] : transforms) {
+    const auto& [stamp, parent] = header;
+    Edge& edge = edges_[std::string(child)];
+    if (edge.parent != parent) edge = Edge{std::string(parent), false, {}};
+    Trajectory& samples = edge.samples;
+    if (!edge.moves && !samples.empty() &&
+        samples.front().world_from_cam == parent_from_child) {
+      if (samples.size() == 1) samples.push_back(samples.front());
+      samples.front().timestamp = std::min(samples.front().timestamp, stamp);
+      samples.back().timestamp = std::max(samples.back().timestamp, stamp);
+      continue;
+    }
+    edge.moves = !samples.empty();
+    const auto place = std::lower_bound(
+        samples.begin(), samples.end(), stamp,
+        [](const StampedPose& pose, double at) { return pose.timestamp < at; });
+    if (place != samples.end() && place->timestamp == stamp) continue;
+    samples.insert(place, {stamp, parent_from_child});
   }
-  edge.moves = !samples.empty();
-  const auto place = std::lower_bound(
-      samples.begin(), samples.end(), stamp,
-      [](const StampedPose& pose, double at) { return pose.timestamp < at; });
-  if (place != samples.end() && place->timestamp == stamp) return;
-  samples.insert(place, {stamp, parent_from_child});
 }
 
 std::vector<std::pair<std::string, Rigid3d>> TransformTree::FixedAbove(

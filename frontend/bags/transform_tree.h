@@ -8,6 +8,7 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/bags/ros_messages.h"
 
 namespace rgbd_pose {
 
@@ -15,9 +16,8 @@ namespace rgbd_pose {
 // parent. Repetitions of a transform that does not change are not stored.
 class TransformTree {
  public:
-  // Adds the pose of a frame in its parent at a time (s), in any order of time.
-  void Add(const std::string& parent, const std::string& child, double stamp,
-           const Rigid3d& parent_from_child);
+  // Adds poses of frames in their parents, in any order of time.
+  void Add(const std::vector<RosTransform>& transforms);
 
   // target_from_source, if it is known and does not change.
   std::optional<Rigid3d> Fixed(const std::string& target,

@@ -44,8 +44,8 @@ int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
   keyframe.frame = PreparedFrame();
   if (keyframe.images.gray == nullptr) keyframe.images = StoredImages(frame);
   if (keyframe.features == nullptr && options_.max_loop_candidates > 0) {
-    keyframe.features = std::make_shared<const PlaceFeatures>(
-        DescribeKeyframe(frame, images.camera, images.depth));
+    keyframe.features =
+        std::make_shared<const PlaceFeatures>(DescribeKeyframe(frame, images));
   }
   keyframes_.push_back(
       {std::move(keyframe), std::nullopt,
@@ -127,8 +127,7 @@ Keyframe Mapper::WithImages(int at) const {
 }
 
 std::optional<Keyframe> Mapper::Find(const PreparedFrame& lost) {
-  const FrontendOptions& images = tracker_->images();
-  const Relocaliser relocaliser(images.camera, images.depth);
+  const Relocaliser relocaliser(tracker_->images());
   const auto found = relocaliser.FindInMap(
       lost, index_, [this](int at) -> const PlaceFeatures& {
         return *keyframes_[at].features;

@@ -5,8 +5,8 @@
 
 namespace rgbd_pose {
 
-PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
-                               const DepthLookupOptions& depth_options) {
+PlaceFeatures DescribeKeyframe(const PreparedFrame& frame,
+                               const FrontendOptions& images) {
   // Keypoints detected, and kept. With half as many, half as many pairs of real
   // keyframes are found to show the same place (docs/places.md).
   constexpr int kMaxKeypoints = 2000;
@@ -14,11 +14,11 @@ PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
   const auto& all = frame.Derived<DescribedKeypoints>(&kOrb, kMaxKeypoints);
   PlaceFeatures features;
   features.described = all.Select(
-      SelectOverGrid(all.keypoints, frame, kMaxFeatures, depth_options));
+      SelectOverGrid(all.keypoints, frame, kMaxFeatures, images.depth));
   for (const cv::KeyPoint& keypoint : features.described.keypoints) {
     features.observations.push_back(
-        Observe(frame, camera, keypoint.pt.x, keypoint.pt.y,
-                kOrb.SigmaPx(keypoint), depth_options));
+        Observe(frame, images.camera, keypoint.pt.x, keypoint.pt.y,
+                kOrb.SigmaPx(keypoint), images.depth));
   }
   return features;
 }

@@ -7,7 +7,7 @@
 #include "core/geometry/camera.h"
 #include "core/initial_guess/consensus.h"
 #include "frontend/features/descriptor_matching.h"
-#include "frontend/frame/depth_lookup.h"
+#include "frontend/features/frontend.h"
 #include "frontend/frame/prepared_frame.h"
 
 namespace rgbd_pose {
@@ -19,8 +19,8 @@ struct PlaceFeatures {
 };
 
 // Up to about 800 features with depth, all over the image. Takes about 8 ms.
-PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
-                               const DepthLookupOptions& depth_options);
+PlaceFeatures DescribeKeyframe(const PreparedFrame& frame,
+                               const FrontendOptions& images);
 
 // The motion between two frames whose descriptors match, by RANSAC
 // (core/initial_guess/consensus.h) without an initial guess. Nothing unless

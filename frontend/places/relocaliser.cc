@@ -16,7 +16,7 @@ constexpr size_t kMaxDescriptions = 2;
 const PlaceFeatures& Relocaliser::FeaturesOf(Keyframe* keyframe) const {
   if (keyframe->features == nullptr) {
     keyframe->features = std::make_shared<const PlaceFeatures>(
-        DescribeKeyframe(keyframe->Unpacked(), camera_, depth_options_));
+        DescribeKeyframe(keyframe->Unpacked(), images_));
   }
   return *keyframe->features;
 }
@@ -32,8 +32,7 @@ std::optional<Relocalisation> Relocaliser::Find(
   }
   if (next_ >= count) next_ = 1;
   latest_id_ = keyframes.front()->id;
-  const PlaceFeatures current =
-      DescribeKeyframe(frame, camera_, depth_options_);
+  const PlaceFeatures current = DescribeKeyframe(frame, images_);
   size_t descriptions = 0;
   for (size_t look = 0; look < std::min(kMaxLooks, count); ++look) {
     // The latest keyframe, then those whose turn it is.
@@ -43,8 +42,8 @@ std::optional<Relocalisation> Relocaliser::Find(
       break;
     }
     if (look > 0 && ++next_ >= count) next_ = 1;
-    if (const auto found =
-            VerifyGeometrically(FeaturesOf(&keyframe), current, camera_)) {
+    if (const auto found = VerifyGeometrically(FeaturesOf(&keyframe), current,
+                                               images_.camera)) {
       return Relocalisation{keyframe.id, found->cur_from_prev,
                             static_cast<int>(found->inliers.size())};
     }
@@ -55,8 +54,7 @@ std::optional<Relocalisation> Relocaliser::Find(
 bool Relocaliser::FindIn(const PreparedFrame& frame, Keyframe* keyframe,
                          Rigid3d* cur_from_keyframe) const {
   const auto found = VerifyGeometrically(
-      FeaturesOf(keyframe), DescribeKeyframe(frame, camera_, depth_options_),
-      camera_);
+      FeaturesOf(keyframe), DescribeKeyframe(frame, images_), images_.camera);
   if (!found.has_value()) return false;
   *cur_from_keyframe = found->cur_from_prev;
   return true;
@@ -65,13 +63,12 @@ bool Relocaliser::FindIn(const PreparedFrame& frame, Keyframe* keyframe,
 std::optional<Relocalisation> Relocaliser::FindInMap(
     const PreparedFrame& frame, const PlaceDatabase& index,
     const std::function<const PlaceFeatures&(int)>& features_of) const {
-  const PlaceFeatures current =
-      DescribeKeyframe(frame, camera_, depth_options_);
+  const PlaceFeatures current = DescribeKeyframe(frame, images_);
   std::optional<Relocalisation> best;
   for (const PlaceCandidate& candidate :
        index.Query(current.described.descriptors, kMaxLooks)) {
-    const auto found =
-        VerifyGeometrically(features_of(candidate.keyframe), current, camera_);
+    const auto found = VerifyGeometrically(features_of(candidate.keyframe),
+                                           current, images_.camera);
     const int inliers =
         found.has_value() ? static_cast<int>(found->inliers.size()) : 0;
     if (inliers <= (best.has_value() ? best->inliers : 0)) continue;

@@ -5,9 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/frame/depth_lookup.h"
+#include "frontend/features/frontend.h"
 #include "frontend/frame/prepared_frame.h"
 #include "frontend/places/keyframe.h"
 #include "frontend/places/place_database.h"
@@ -28,9 +27,7 @@ struct Relocalisation {
 // the same results. One object serves one thread.
 class Relocaliser {
  public:
-  explicit Relocaliser(const Camera& camera,
-                       const DepthLookupOptions& depth_options)
-      : camera_(camera), depth_options_(depth_options) {}
+  explicit Relocaliser(const FrontendOptions& images) : images_(images) {}
 
   // Searches the latest keyframe (first in `keyframes`) and a few others,
   // different ones in each call, also if each call comes with one more. Nothing
@@ -52,8 +49,7 @@ class Relocaliser {
  private:
   const PlaceFeatures& FeaturesOf(Keyframe* keyframe) const;
 
-  Camera camera_;
-  DepthLookupOptions depth_options_;
+  FrontendOptions images_;
   int latest_id_ = -1;  // latest keyframe in the last Find
   size_t next_ = 1;     // where the next Find continues
 };

@@ -5,6 +5,7 @@
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_topics.h"
 #include "frontend/bags/ros_image.h"
+#include "frontend/bags/transform_tree.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/image_pairing.h"
 #include "frontend/sources/source_kinds.h"
@@ -126,7 +127,7 @@ class BagSource final : public FrameSource {
   void Add(const BagMessage& message) {
     const bool is_color = message.topic == topics_.color;
     if (!is_color && message.topic != topics_.depth) {
-      AddTransforms(*bag_, message, &transforms_);
+      transforms_.Add(ReadMessage(*bag_, message, ReadRosTransforms));
       return;
     }
     const RosHeader header = ReadImageOf(*bag_, message).header;

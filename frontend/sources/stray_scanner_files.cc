@@ -1,7 +1,5 @@
 #include "frontend/sources/stray_scanner_files.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/util/format.h"
@@ -13,8 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 9> kOdometryColumns = {
-    "timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"};
+constexpr char kOdometryColumns[] =
+    "timestamp, frame, x, y, z, qx, qy, qz, qw, ";
+constexpr size_t kNumOdometryColumns = 9;
 
 // The path of a numbered image, with or without leading zeros; empty: none.
 std::string NumberedImage(const fs::path& folder, double number) {
@@ -31,7 +30,7 @@ StrayRow ParseRow(const fs::path& folder, const cv::Size& size,
   for (const std::string& word : line.words) {
     values.push_back(ParseNumber(word, path, line.number, "row of a frame"));
   }
-  if (values.size() < kOdometryColumns.size()) {
+  if (values.size() < kNumOdometryColumns) {
     throw InputError(path, line.number,
                      "needs 9 columns, has " + std::to_string(values.size()) +
                          "; was the file cut off?");
@@ -44,7 +43,7 @@ StrayRow ParseRow(const fs::path& folder, const cv::Size& size,
   row.timestamp = ParseTimestamp(line.words[0], path, line.number);
   row.world_from_cam = Rigid3d(turn, {values[2], values[3], values[4]});
   // Newer versions of the app add these columns.
-  if (values.size() >= kOdometryColumns.size() + 4) {
+  if (values.size() >= kNumOdometryColumns + 4) {
     row.camera = Camera{size.width, size.height, values[9],
                         values[10], values[11],  values[12]};
     RequireSound(row.camera->Check(),
@@ -61,12 +60,10 @@ std::vector<StrayRow> ReadStrayRows(const fs::path& folder,
                                     const cv::Size& size) {
   const std::string path = (folder / "odometry.csv").string();
   std::vector<TextLine> lines = ReadTextTable(path);
-  if (lines.empty() || lines[0].words.size() < kOdometryColumns.size() ||
-      !std::equal(kOdometryColumns.begin(), kOdometryColumns.end(),
-                  lines[0].words.begin())) {
-    throw InputError(path +
-                     ": needs the columns timestamp, frame, x, y, z, qx, qy, "
-                     "qz, qw, as Stray Scanner writes them since version 1.2");
+  if (lines.empty() ||
+      (Join(lines[0].words) + ", ").rfind(kOdometryColumns, 0) != 0) {
+    throw InputError(path + ": needs the columns " + kOdometryColumns +
+                     "as Stray Scanner writes them since version 1.2");
   }
   std::vector<StrayRow> rows;
   for (size_t i = 1; i < lines.size(); ++i) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -95,10 +94,8 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
   return images;
 }
 
-bool MentionsDepth(std::string path) {
-  std::transform(path.begin(), path.end(), path.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return path.find("depth") != std::string::npos;
+bool MentionsDepth(const std::string& path) {
+  return cv::toLowerCase(path).find("depth") != std::string::npos;
 }
 
 bool IsDepthImage(const ListedImage& image) {

@@ -19,14 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string FormatStamp(double timestamp) { return FixedNumber(timestamp, 6); }
-
 double DepthStamp(const Frame& frame) {
   return frame.timestamp + frame.depth_delay;
 }
 
 std::string ImagePath(const std::string& kind, double timestamp) {
-  return kind + "/" + FormatStamp(timestamp) + ".png";
+  return kind + "/" + FixedNumber(timestamp, 6) + ".png";
 }
 
 void WritePng(const fs::path& path, const cv::Mat& image) {
@@ -74,7 +72,7 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
   const std::string head = "# timestamp filename\n";
   std::map<std::string, std::string> lists = {{"rgb", head}, {"depth", head}};
   const auto add = [&lists](const std::string& kind, double stamp) {
-    lists[kind] += FormatStamp(stamp) + " " + ImagePath(kind, stamp) + "\n";
+    lists[kind] += FixedNumber(stamp, 6) + " " + ImagePath(kind, stamp) + "\n";
   };
   WrittenSequence written;
   while (const std::optional<StreamedFrame> next = stream.Next()) {

@@ -55,7 +55,7 @@ Odometry::Odometry(const OdometryOptions& options,
                    std::unique_ptr<Tracker> tracker)
     : options_(options),
       tracker_(std::move(tracker)),
-      relocaliser_(tracker_->images().camera, tracker_->images().depth),
+      relocaliser_(tracker_->images()),
       attempts_(tracker_.get()),
       shutter_tracking_(tracker_.get()) {
   RequireSound(options.Check(), "odometry: ");

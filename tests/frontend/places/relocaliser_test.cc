@@ -68,7 +68,7 @@ Rigid3d Moved(double x, double y, double z) {
 // A relocaliser with the keyframes to search.
 class Search {
  public:
-  explicit Search(const Camera& camera) : relocaliser_(camera, {}) {}
+  explicit Search(const Camera& camera) : relocaliser_({camera}) {}
 
   void Add(const Frame& keyframe, int id) {
     kept_.push_front({id, 0, Rigid3d(), PreparedFrame(keyframe)});
@@ -131,7 +131,7 @@ TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
 // Views in all directions, of which the index selects a few candidates.
 TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
   FurnishedRoom room(1);
-  const Relocaliser relocaliser(room.camera(), {});
+  const Relocaliser relocaliser({room.camera()});
   PlaceDatabase index;
   std::vector<PlaceFeatures> map;
   const auto features_of = [&](int id) -> const PlaceFeatures& {
@@ -139,7 +139,7 @@ TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
   };
   for (int i = 0; i < 12; ++i) {
     map.push_back(DescribeKeyframe(PreparedFrame(room.See(Turned(30.0 * i))),
-                                   room.camera(), {}));
+                                   {room.camera()}));
     index.Add(i, map.back().described.descriptors);
   }
   for (const int i : {0, 1, 5, 11}) {

@@ -1,4 +1,4 @@
-#include "frontend/features/match_overlay.h"
+#include "frontend/tracking/tracking_pictures.h"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ bool Differ(const cv::Mat& a, const cv::Mat& b, int first, int last) {
                   cv::NORM_INF) > 0.0;
 }
 
-TEST(MatchOverlayTest, DrawsLinesAndDotsInTheColourOfTheWeight) {
+TEST(TrackingPicturesTest, DrawsLinesAndDotsInTheColourOfTheWeight) {
   const Camera camera;
   const FeatureMatches found =
       Matches(camera, {{100, 50, 140, 50}, {300, 400, 300, 350}});
@@ -79,7 +79,7 @@ TEST(MatchOverlayTest, DrawsLinesAndDotsInTheColourOfTheWeight) {
   EXPECT_TRUE(IsGray(At(picture, 302, 400)));
 }
 
-TEST(MatchOverlayTest, DimsTheImageAndLeavesItAlone) {
+TEST(TrackingPicturesTest, DimsTheImageAndLeavesItAlone) {
   const Camera camera;
   const Frame frame = GrayFrame(camera);
   const cv::Mat picture =
@@ -91,7 +91,7 @@ TEST(MatchOverlayTest, DimsTheImageAndLeavesItAlone) {
   EXPECT_EQ(frame.gray.at<uchar>(50, 120), kGray) << "drew into the frame";
 }
 
-TEST(MatchOverlayTest, GoodMatchesLieOnTopOfOutliers) {
+TEST(TrackingPicturesTest, GoodMatchesLieOnTopOfOutliers) {
   const Camera camera;
   const std::vector<std::array<double, 4>> crossing = {{100, 100, 140, 100},
                                                        {120, 80, 120, 120}};
@@ -104,7 +104,7 @@ TEST(MatchOverlayTest, GoodMatchesLieOnTopOfOutliers) {
   }
 }
 
-TEST(MatchOverlayTest, PutsIdealPixelsBackIntoTheDistortedImage) {
+TEST(TrackingPicturesTest, PutsIdealPixelsBackIntoTheDistortedImage) {
   const Camera camera = CameraPreset("tum_fr1")->camera;
   const Eigen::Vector2d prev = camera.Undistort({30, 40});
   const Eigen::Vector2d cur = camera.Undistort({60, 40});
@@ -120,7 +120,7 @@ TEST(MatchOverlayTest, PutsIdealPixelsBackIntoTheDistortedImage) {
   EXPECT_TRUE(IsGray(At(picture, 66, 40)));
 }
 
-TEST(MatchOverlayTest, WithoutWeightsMatchesAreLightGrey) {
+TEST(TrackingPicturesTest, WithoutWeightsMatchesAreLightGrey) {
   const Camera camera;
   const FeatureMatches found =
       Matches(camera, {{100, 50, 140, 50}, {300, 400, 300, 350}});
@@ -133,7 +133,7 @@ TEST(MatchOverlayTest, WithoutWeightsMatchesAreLightGrey) {
   }
 }
 
-TEST(MatchOverlayTest, TheCaptionAndTheLegendAreBelowTheImage) {
+TEST(TrackingPicturesTest, TheCaptionAndTheLegendAreBelowTheImage) {
   for (const int width : {320, 640, 1280}) {
     SCOPED_TRACE(width);
     Camera camera;
@@ -171,7 +171,7 @@ TEST(MatchOverlayTest, TheCaptionAndTheLegendAreBelowTheImage) {
 // At 320 px, a caption of usual length is wrapped into two rows instead of
 // being cut off: the right margin stays empty, and the caption's end is
 // visible.
-TEST(MatchOverlayTest, LongCaptionsAreWrapped) {
+TEST(TrackingPicturesTest, LongCaptionsAreWrapped) {
   Camera camera;
   camera.width = 320;
   camera.height = 240;
@@ -189,7 +189,7 @@ TEST(MatchOverlayTest, LongCaptionsAreWrapped) {
             0.0);
 }
 
-TEST(MatchOverlayTest, TakesAnythingThatIsFinite) {
+TEST(TrackingPicturesTest, TakesAnythingThatIsFinite) {
   Camera camera{8, 6, 10, 10, 4, 3, 0.1, -0.2, 0.01, -0.02, 0.3};
   const FeatureMatches found =
       Matches(camera, {{9e5, -9e5, 9e5, 5}, {-50, -50, 50, 50}, {3, 3, 3, 3}});

@@ -3,8 +3,10 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "core/estimation/frame_view.h"
 #include "core/estimation/motion_estimate.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
 #include "frontend/frame/frame.h"
 
@@ -20,5 +22,14 @@ namespace rgbd_pose {
 cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
                     const FeatureMatches& found, const MotionEstimate& estimate,
                     const std::string& caption);
+
+// Draws how well the pixels of a frame agree with a motion, as seen by the
+// camera of the reference, in half the width and height: CV_8UC3 (blue, green,
+// red). Grey where the frame agrees with the reference, red where it is
+// brighter, blue where it is darker, apart from gain and bias of the whole
+// image; full colour from 20 grey levels on. Black where the reference has no
+// depth or the frame does not see the point.
+cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
+                      const Rigid3d& cur_from_ref);
 
 }  // namespace rgbd_pose
