@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/pipeline/sequence.h"
-#include "apps/results/run_tracking.h"
+#include "apps/run/run_tracking.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"

@@ -12,7 +12,7 @@
 #include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/results/calibration_output.h"
-#include "apps/results/run_tracking.h"
+#include "apps/run/run_tracking.h"
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"

@@ -2,20 +2,16 @@
 #include "frontend/sources/source_kinds.h"
 #ifdef RGBD_POSE_HAS_VIDEOIO
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <memory>
-#include <mutex>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <optional>
 #include <vector>
 
 #include "core/evaluation/association.h"
 #include "core/util/format.h"
-#include "core/util/text_file.h"
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
+#include "frontend/files/video_file.h"
 #include "frontend/frame/depth_resampling.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/stray_scanner_files.h"
@@ -51,92 +47,6 @@ cv::Matx23d PixelMap(const Camera& from, const Camera& to) {
   const double y = to.fy / from.fy;
   return {x, 0.0, to.cx - x * from.cx, 0.0, y, to.cy - y * from.cy};
 }
-
-// Opens a video including the images that an edit list hides. OpenCV takes this
-// option of FFmpeg from the environment only.
-bool OpenWhole(const std::string& path, cv::VideoCapture* video) {
-  static std::mutex one_at_a_time;
-  const std::lock_guard<std::mutex> lock(one_at_a_time);
-  constexpr char kOptions[] = "OPENCV_FFMPEG_CAPTURE_OPTIONS";
-  const char* const set = std::getenv(kOptions);
-  const std::string before = set == nullptr ? "" : set;
-  setenv(kOptions, "ignore_editlist;1", 1);
-  // Prevents FFmpeg from printing its own messages about damaged files.
-  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
-  const bool is_open = video->open(path, cv::CAP_FFMPEG);
-  if (set == nullptr) {
-    unsetenv(kOptions);
-  } else {
-    setenv(kOptions, before.c_str(), 1);
-  }
-  return is_open;
-}
-
-// A video that is read image by image, because random access is slow and
-// inexact. Skipped images are decoded, since later images depend on them, but
-// not converted to pictures, which saves half the time.
-class VideoFile {
- public:
-  // Opens all images of the file without rotating them.
-  explicit VideoFile(const std::string& path) : path_(path) {
-    if (!PathExists(path)) {
-      throw InputError(path + ": missing; copy the whole folder");
-    }
-    if (!OpenWhole(path, &video_)) {
-      throw InputError(path +
-                       ": cannot be read as a video; is it damaged or cut "
-                       "off?");
-    }
-    video_.set(cv::CAP_PROP_ORIENTATION_AUTO, 0.0);
-    size_ = {static_cast<int>(video_.get(cv::CAP_PROP_FRAME_WIDTH)),
-             static_cast<int>(video_.get(cv::CAP_PROP_FRAME_HEIGHT))};
-    count_ = static_cast<int>(video_.get(cv::CAP_PROP_FRAME_COUNT));
-  }
-
-  const std::string& path() const { return path_; }
-  cv::Size size() const { return size_; }
-  int count() const { return count_; }        // number of images in the header
-  int num_read() const { return num_read_; }  // number of calls of Next
-
-  // Advances to the next image and returns a handle for At. If it is released
-  // before the next call, the image is skipped.
-  std::shared_ptr<cv::Mat> Next() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    TakeOut();
-    if (!video_.grab()) {
-      video_.release();  // what came after would have the wrong number
-      throw InputError(path_ + ": only " + std::to_string(num_read_) + " of " +
-                       std::to_string(count_) +
-                       " images can be decoded; is it damaged or cut off?");
-    }
-    ++num_read_;
-    auto place = std::make_shared<cv::Mat>();
-    last_ = place;
-    return place;
-  }
-
-  // The image of a handle: CV_8UC3 (BGR). Thread-safe.
-  const cv::Mat& At(const std::shared_ptr<cv::Mat>& place) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (place->empty()) TakeOut();
-    if (place->empty()) throw InputError(path_ + ": an image is damaged");
-    return *place;
-  }
-
- private:
-  void TakeOut() {
-    const std::shared_ptr<cv::Mat> place = last_.lock();
-    if (place != nullptr && place->empty()) video_.retrieve(*place);
-  }
-
-  std::string path_;
-  cv::Size size_;
-  int count_ = 0;
-  int num_read_ = 0;
-  std::mutex mutex_;  // guards the members below
-  cv::VideoCapture video_;
-  std::weak_ptr<cv::Mat> last_;  // the last handle of Next
-};
 
 class StrayScanner final : public FrameSource {
  public:

@@ -68,6 +68,7 @@ room apps/batch "$programs" "$libraries"
 room apps/report "$programs" "$libraries"
 room apps/view "$programs" "$libraries|httplib\.h"
 room apps/export "$programs" "$libraries"
+room apps/run "$programs" "$libraries"
 room apps/python "$programs" "$libraries|pybind11/|Python.h|cxxabi.h"
 
 # Finds include cycles, also within a room.

@@ -1,4 +1,4 @@
-#include "apps/results/run_tracking.h"
+#include "apps/run/run_tracking.h"
 
 #include <gflags/gflags.h>
 
