@@ -90,13 +90,14 @@ struct CalibrationSteps {
     result.views = static_cast<int>(data.views.views.size());
     start = ThetaOf(map.camera);
     prior.mean = ThetaBetween(first, known);
+    const CalibrationVector values = CameraValues(first, first);
     asked = FreeParameters(settings.fix, !data.views.distances.empty(),
                            map.camera.lens_model);
     for (int k = 0; k < kCalibrationSize; ++k) {
       prior.sigma[k] = kCalibrationParameters[k].prior;
       if (k == kFx || k == kFy) prior.sigma[k] *= start[k];
       CalibratedParameter& parameter = result.parameters[k];
-      parameter.before = parameter.found = start[k];
+      parameter.before = parameter.found = values[k];
       parameter.prior = parameter.sigma = prior.sigma[k];
       if (asked[k]) parameter.status = Status::kUndetermined;
     }
@@ -181,10 +182,12 @@ struct CalibrationSteps {
   // Takes needed parameters and their error bars from the solution.
   void TakeParameters(const BundleAdjustment& problem) {
     const auto variances = problem.Variances(needed, after);
+    const CalibrationVector values =
+        CameraValues(first, ApplyCalibration(first, after.theta));
     for (int k = 0; k < kCalibrationSize; ++k) {
       if (!needed[k]) continue;
       CalibratedParameter& parameter = result.parameters[k];
-      parameter.found = after.theta[k];
+      parameter.found = values[k];
       parameter.sigma =
           variances.has_value()
               ? std::hypot(result.halves_spread * std::sqrt((*variances)[k]),
@@ -330,6 +333,13 @@ CalibrationVector ThetaBetween(const RgbdCamera& first,
   theta.segment<3>(kRotationX) = RotationVector(moved.rotation);
   theta.segment<3>(kTranslationX) = moved.translation;
   return theta;
+}
+
+CalibrationVector CameraValues(const RgbdCamera& first,
+                               const RgbdCamera& changed) {
+  RgbdCamera uncorrected;
+  uncorrected.depth_scale = first.depth_scale;
+  return ThetaBetween(uncorrected, changed);
 }
 
 }  // namespace rgbd_pose

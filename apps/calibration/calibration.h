@@ -78,4 +78,9 @@ RgbdCamera ApplyCalibration(const RgbdCamera& first,
 CalibrationVector ThetaBetween(const RgbdCamera& first,
                                const RgbdCamera& changed);
 
+// Returns the parameters of a camera as its file has them; the depth factor
+// relative to the first camera.
+CalibrationVector CameraValues(const RgbdCamera& first,
+                               const RgbdCamera& changed);
+
 }  // namespace rgbd_pose

@@ -32,14 +32,14 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
     return false;
   }
   CalibrationResult merged = *all;
-  const CalibrationVector theta = ThetaBetween(first, further.found);
+  const CalibrationVector values = CameraValues(first, further.found);
   for (int k = 0; k < kCalibrationSize; ++k) {
     CalibratedParameter& parameter = merged.parameters[k];
     if (further.parameters[k].status == Status::kDetermined) {
       parameter.status = Status::kDetermined;
       parameter.sigma = further.parameters[k].sigma;
     }
-    if (parameter.status == Status::kDetermined) parameter.found = theta[k];
+    if (parameter.status == Status::kDetermined) parameter.found = values[k];
   }
   merged.camera = merged.found = further.found;
   merged.reason = ImplausibilityReason(first, merged);

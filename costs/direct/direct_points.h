@@ -55,7 +55,8 @@ struct DirectResidual {
   static constexpr int kScaleGroup = 0;        // see MotionCost::scale_group
   static constexpr int kMaxPoints = 3000;      // see DirectOptions
   static constexpr double kInformation = 1.0;  // see DirectCostOf
-  // Whether the cost reads gray levels, whose brightness may have changed.
+  // Whether the cost reads the gray levels of the current pyramid level, whose
+  // brightness may have changed.
   static constexpr bool kSeesBrightness = false;
 };
 

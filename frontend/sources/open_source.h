@@ -44,8 +44,7 @@ CameraSetup ChooseCamera(const SourceOptions& options,
                          const std::optional<CameraSetup>& of_recording = {});
 
 // The kinds of recording that OpenSource accepts. The first is auto, which
-// detects the kind. To add one, write a FrameSource and a row in
-// open_source.cc.
+// detects the kind. To add one, see docs/sources.md.
 std::vector<std::string> SourceNames();
 
 // Opens a recording. Known depth errors of its camera are corrected in its

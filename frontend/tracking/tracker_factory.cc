@@ -12,7 +12,8 @@ namespace {
 
 enum class TrackerKind { kFeatures, kDirect, kHybrid };
 
-// A new tracker needs a header, a row here and a case in MakeTracker.
+// A new tracker needs a header, its kind and row here, and a way to be made
+// below.
 constexpr Named<TrackerKind> kTrackers[] = {
     {"features", TrackerKind::kFeatures},
     {"direct", TrackerKind::kDirect},

@@ -6,6 +6,7 @@
 - A ```cpp block equals the file named in the comment before it
   (<!-- docs/examples/x.cc -->), which a test compiles and runs. This applies to
   any other block with such a comment. With --write, blocks are updated instead.
+- Names that a flag takes are in the table of the page about them.
 - Blocks have a language that is tested: sh is run by
   tests/docs/docs_commands.py, python by tests/python/test_docs.py.
 """
@@ -19,6 +20,11 @@ import docs_exceptions
 # Pages whose blocks are compiled unchanged, by tests/CMakeLists.txt.
 COMPILED = ['docs/compressed_block.md']
 LANGUAGES = ['cpp', 'diff', 'python', 'sh', 'text']
+
+# Flags that take names, and the page with a table of these.
+NAMES = {'direct_cost': 'docs/direct.md', 'frontend': 'docs/frontends.md',
+         'source': 'docs/sources.md', 'to': 'docs/exports.md',
+         'tracker': 'docs/frontends.md'}
 
 BLOCK = re.compile(r'(<!-- (docs/examples/\S+) -->\n)?```(\w*)\n(.*?)```', re.S)
 
@@ -62,6 +68,18 @@ def check_links(source, pages):
     return problems
 
 
+def check_names(pages):
+    problems = []
+    flags = pages['docs/reference/flags.md']
+    for flag, page in NAMES.items():
+        choices = re.search(rf'^\| `--{flag}` .*one of ([^|]*)\|', flags, re.M)
+        rows = ' '.join(re.findall(r'^\| (`[^|]*)\|', pages[page], re.M))
+        problems += [f'{page}: no row of {name} (--{flag})'
+                     for name in re.findall(r'`\w+`', choices.group(1))
+                     if name not in rows and name != '`auto`']
+    return problems
+
+
 def check_blocks(source, name, text, write):
     """Returns the problems and the page with updated examples."""
     problems = []
@@ -95,7 +113,7 @@ def main():
     paths += sorted((source / 'docs').rglob('*.md'))
     pages = {path.relative_to(source).as_posix(): path.read_text()
              for path in paths}
-    problems = check_links(source, pages)
+    problems = check_links(source, pages) + check_names(pages)
     examples = set()
     for name, text in pages.items():
         more, renewed = check_blocks(source, name, text, write)

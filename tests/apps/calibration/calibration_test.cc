@@ -98,6 +98,12 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_NEAR(result.camera.camera.cy, truth.cy, 0.5);
   EXPECT_NEAR(result.camera.depth_correction.inverse_depth_offset, 0.0, 2e-3);
   EXPECT_NEAR(result.camera.depth_shutter.offset, 0.0, 1e-3);
+  // Parameters have the values of the camera, not their changes.
+  EXPECT_EQ(Of(result, kInverseDepth).before, 0.01);
+  EXPECT_EQ(Of(result, kInverseDepth).found,
+            result.camera.depth_correction.inverse_depth_offset);
+  EXPECT_EQ(Of(result, kDepthTime).before, -0.01);
+  EXPECT_EQ(Of(result, kDepthTime).found, result.camera.depth_shutter.offset);
   EXPECT_LT(result.cost_after, result.cost_before);
   // Parameters that were right are unchanged.
   EXPECT_EQ(result.camera.camera.k1, truth.k1);
@@ -159,7 +165,7 @@ TEST(CalibrationTest, WhatIsFixedStays) {
   const CalibrationResult result = MappedWrongly().Calibrate(settings);
   EXPECT_EQ(Of(result, kCx).status, Status::kFixed);
   EXPECT_EQ(Of(result, kCx).found, Wrong().camera.cx);
-  EXPECT_EQ(Of(result, kDepthTime).found, 0.0);
+  EXPECT_EQ(Of(result, kDepthTime).found, Wrong().depth_shutter.offset);
   EXPECT_EQ(Of(result, kRotationY).found, 0.0);
   EXPECT_NE(Of(result, kFx).status, Status::kFixed);
   // k1 was right and must not compensate for parameters fixed at wrong values.

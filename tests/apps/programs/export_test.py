@@ -10,6 +10,7 @@ read by colmap; the exit code is 77 (test skipped) where colmap is missing.
 import json
 import math
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -347,7 +348,10 @@ def main(bin_folder, work, colmap):
              for x in map(numbers, data_lines(result, 'trajectory.txt'))]
     check(len(poses) == FRAMES, 'lost frames')
 
+    exported = set()
+
     def export(name, output, *flags):
+        exported.add(name)
         run(program('rgbd_export'), f'--run={result}', f'--to={name}',
             f'--output={work}/{output}', *flags)
         return os.path.join(work, output)
@@ -386,6 +390,10 @@ def main(bin_folder, work, colmap):
     check(len(data_lines(tum)) == FRAMES, 'TUM')
     check_g2o(export('g2o', 'graph.g2o'), poses)
     check_lenses(program, work)
+    # Foxglove's files are read by mcap_export_test.py.
+    choices = re.search(r'--to .*\n.*\n *one of: (.*)', run(program('rgbd_export'), '--help'))
+    unchecked = set(choices.group(1).split()) - exported - {'mcap'}
+    check(not unchecked, 'no check of', *unchecked)
 
 
 if __name__ == '__main__':

@@ -222,7 +222,7 @@ TEST_F(ViewServerTest, APortThatIsTakenIsSaid) {
     FAIL() << "took it twice";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("--view_port=" + std::to_string(PortOf(server)) +
+                HasSubstr("view_port=" + std::to_string(PortOf(server)) +
                           ": cannot listen on this port"));
   }
 }

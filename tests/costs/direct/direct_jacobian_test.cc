@@ -16,6 +16,14 @@ namespace {
 constexpr double kTolerance = 1e-12;
 constexpr int kMinSamples = 300;
 
+template <typename... Types>
+constexpr bool AllHaveJacobians(TypeList<Types...>) {
+  return (kHas<JacobianOf, Types> && ...);
+}
+static_assert(AllHaveJacobians(DirectResidualTypes()),
+              "a cost of this project is differentiated by hand: give it a "
+              "Jacobian");
+
 template <typename Residual>
 class DirectJacobianTest : public ::testing::Test,
                            protected BothJacobians<Residual> {};

@@ -87,6 +87,15 @@ Eigen::VectorXd Column(const PackedColumns& points, int size, int i) {
   return point;
 }
 
+// Adds the residual of a point to the sums, following the cost's formula.
+template <typename Residual>
+void AddOf(Residual, const DirectInput&, const Rigid3d&, const Eigen::VectorXd&,
+           Sums*) {
+  static_assert(!sizeof(Residual),
+                "a new cost needs an AddOf here: the same residual computed "
+                "through the image");
+}
+
 void AddOf(Photometric, const DirectInput& input, const Rigid3d& motion,
            const Eigen::VectorXd& point, Sums* sums) {
   const FrameView::Level& level = input.cur->levels[input.level];
