@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,12 @@
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/pipeline/slam.h"
 #include "core/util/input_error.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/frame_assembly.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {
 namespace {
@@ -300,6 +304,39 @@ TEST(CalibrationTest, AKnownLengthHasToMakeSense) {
   }
   expect("1000,5000,1", "no frame was tracked at 5000");
   expect("1000,1000.1,1", "hardly moved");
+}
+
+// Fewer frames would make velocities, and with them readouts, too small.
+TEST(CalibrationTest, UsesAllFramesOfACameraWith30PerSecond) {
+  const TempFolder folder;
+  std::string rgb, depth;
+  std::filesystem::create_directory(folder / "rgb");
+  std::filesystem::create_directory(folder / "depth");
+  constexpr int kFrames = 7;
+  for (int k = 0; k < kFrames; ++k) {
+    const std::string name = std::to_string(k) + ".png";
+    WriteImage(folder / ("rgb/" + name), ColorImage(k));
+    WriteImage(folder / ("depth/" + name), DepthImage(k));
+    const std::string stamp = std::to_string(1.0 + k / 30.0);
+    rgb += stamp + " rgb/" + name + "\n";
+    depth += stamp + " depth/" + name + "\n";
+  }
+  folder.Write("rgb.txt", rgb);
+  folder.Write("depth.txt", depth);
+  folder.Write("camera.yaml", FormatCameraFile(SmallCamera(), "ros_default"));
+  const auto count = [&folder](const CalibrationSettings& settings) {
+    SequenceSettings sequence;
+    sequence.dataset = folder.path();
+    int used = 0;
+    CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
+                       settings, /*threads=*/1,
+                       [&used](int, int, int all) { used = all; });
+    return used;
+  };
+  EXPECT_EQ(count({}), kFrames);
+  CalibrationSettings slow;
+  slow.max_rate = 15.0;
+  EXPECT_EQ(count(slow), (kFrames + 1) / 2);
 }
 
 }  // namespace
