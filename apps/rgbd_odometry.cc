@@ -69,7 +69,7 @@ int Main(const RunSettings& settings, const ProgramInfo& info) {
   Sequence sequence = OpenSequence(settings.sequence, keep_color);
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
-  SequenceRun run(settings.odometry, sequence.source->camera().camera,
+  SequenceRun run(settings.odometry, sequence.source->camera(),
                   sequence.inputs);
   return TrackAndWrite(settings, info, start, &sequence, &run);
 }

@@ -102,7 +102,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   Warn(sequence.remarks);
   if (!settings.save_map.empty()) RequireMapFolder(settings.save_map);
   SequenceRun run(settings.odometry, settings.slam,
-                  sequence.source->camera().camera, sequence.inputs);
+                  sequence.source->camera(), sequence.inputs);
   LoadMaps(settings, run.slam());
   return TrackAndWrite(settings, info, start, &sequence, &run, found);
 }

@@ -25,7 +25,7 @@ OdometrySettings TrackedBy(const char* tracker) {
 class OurTracker : public FrameTracker {
  public:
   OurTracker(const char* tracker, const Camera& camera)
-      : odometry_(MakeOdometry(TrackedBy(tracker), camera)) {}
+      : odometry_(MakeOdometry(TrackedBy(tracker), {camera})) {}
 
   std::optional<Rigid3d> Track(const BenchmarkFrame& frame) override {
     const TrackedFrame tracked = odometry_.Track(frame.frame);

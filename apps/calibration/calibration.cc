@@ -55,7 +55,7 @@ constexpr double kMaxSpread = 4.0;
 
 // The steps of Calibrate and what they share.
 struct CalibrationSteps {
-  // As given to Calibrate.
+  // As given to Calibrate; the depth noise is that of the first camera.
   const KeyframeMap& map;
   const RgbdCamera& first;
   const OdometrySettings& odometry;
@@ -250,6 +250,7 @@ struct CalibrationSteps {
     result.camera = result.found;
     result.noise =
         FitDepthNoise(data.views, after, odometry.features.depth.noise);
+    result.UseNoise();
   }
 };
 
@@ -262,7 +263,11 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known) {
   RequireSound(settings.Check(), "calibration: ");
-  CalibrationSteps steps{map, first, odometry, settings, threads};
+  OdometrySettings with_noise = odometry;
+  with_noise.features.depth.noise = NoiseFor(odometry, first);
+  // The spread of pixels is measured relative to what the frontend states.
+  with_noise.features.feature_noise = 1.0;
+  CalibrationSteps steps{map, first, with_noise, settings, threads};
   CalibrationResult& result = steps.result;
   steps.Collect(path, scale, known != nullptr ? *known : first);
   constexpr int kMinViews = 100;

@@ -64,6 +64,9 @@ struct DepthNoiseFit {
 
   // The scatter of depths in units of the previous model's sigmas.
   double in_old_sigmas = 0.0;
+
+  // Whether it is noise; a larger scatter means that depth is displaced.
+  bool IsPlausible() const { return in_old_sigmas <= 5.0; }
 };
 
 // The result of a calibration.
@@ -103,6 +106,13 @@ struct CalibrationResult {
 
   // Depth noise with the resulting camera; empty if there are too few depths.
   std::optional<DepthNoiseFit> noise;
+
+  // Takes the noise, if it is plausible, into the camera.
+  void UseNoise() {
+    if (noise.has_value() && noise->IsPlausible()) {
+      camera.depth_noise = noise->model;
+    }
+  }
 
   // Error of the motions of pairs against the ground truth (RMSE, m), with the
   // poses estimated for each camera; 0 without ground truth.

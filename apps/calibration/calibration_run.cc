@@ -45,6 +45,7 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
   merged.reason = ImplausibilityReason(first, merged);
   if (!merged.reason.empty()) return false;
   merged.noise = further.noise;
+  merged.UseNoise();
   merged.halves = further.halves;
   merged.halves_spread = further.halves_spread;
   merged.pixel_after = further.pixel_after;
@@ -118,12 +119,15 @@ RecordingCalibration CalibrateRecording(
     known->color_shutter = known->depth_shutter = Shutter();
   }
   for (int pass = 1;; ++pass) {
-    if (pass > 1) known = all.result.camera;
+    if (pass > 1) {
+      known = all.result.camera;
+      known->depth_noise = first.depth_noise;  // what scatter is compared with
+    }
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
     const int frames = static_cast<int>(opened.source->timestamps().size());
     const RgbdCamera camera = opened.source->camera();
-    SequenceRun run(with_shutter, slam, camera.camera, opened.inputs);
+    SequenceRun run(with_shutter, slam, camera, opened.inputs);
     int done = 0;
     all.stopped = TrackAll(opened.source.get(), threads, {&run},
                            [&](const Frame& /*frame*/) {

@@ -95,7 +95,7 @@ class SequenceExperiment {
     std::vector<SequenceRun> runs;
     for (const std::string& loss : losses_) {
       settings.estimator.loss = loss;
-      runs.emplace_back(settings, source->camera().camera);
+      runs.emplace_back(settings, source->camera());
     }
     std::vector<SequenceRun*> all;
     for (SequenceRun& run : runs) all.push_back(&run);

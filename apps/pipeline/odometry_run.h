@@ -67,14 +67,14 @@ struct RunResults {
 class SequenceRun {
  public:
   // With an Odometry. Throws InputError for invalid settings.
-  SequenceRun(const OdometrySettings& settings, const Camera& camera,
+  SequenceRun(const OdometrySettings& settings, const RgbdCamera& camera,
               const RunInputs& inputs = {})
       : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {}
 
   // With a Slam: frames and debug images have the poses known at the time; the
   // trajectory has the final poses. Throws InputError for invalid settings.
   SequenceRun(const OdometrySettings& odometry, const SlamSettings& settings,
-              const Camera& camera, const RunInputs& inputs = {})
+              const RgbdCamera& camera, const RunInputs& inputs = {})
       : inputs_(inputs),
         slam_(std::make_unique<Slam>(odometry, settings, camera)) {}
 

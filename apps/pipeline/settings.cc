@@ -112,10 +112,17 @@ Estimator MakeEstimator(const EstimatorSettings& settings) {
                    MakeRobustCosts(settings.cost, settings.loss));
 }
 
+DepthNoiseModel NoiseFor(const OdometrySettings& settings,
+                         const RgbdCamera& camera) {
+  const DepthNoiseModel& chosen = settings.features.depth.noise;
+  return chosen.name == "camera" ? camera.depth_noise.value_or(chosen) : chosen;
+}
+
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
-                                     const Camera& camera) {
+                                     const RgbdCamera& camera) {
   FrontendOptions features = settings.features;
-  features.camera = camera;
+  features.camera = camera.camera;
+  features.depth.noise = NoiseFor(settings, camera);
   DirectSettings direct = settings.direct;
   direct.points.min_depth = features.depth.min_depth;
   direct.points.max_depth = features.depth.max_depth;
@@ -125,7 +132,8 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                       MakeDirectEstimators(settings.estimator, direct)});
 }
 
-Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
+Odometry MakeOdometry(const OdometrySettings& settings,
+                      const RgbdCamera& camera) {
   return Odometry(settings.odometry, MakeTracker(settings, camera));
 }
 
@@ -170,7 +178,8 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "degenerate",
        &options->max_standard_deviation},
       {"depth_noise", kEstimationGroup,
-       "depth noise: a model, or a file written by rgbd_calibrate",
+       "depth noise: a model, or a file written by rgbd_calibrate; camera: "
+       "that of the camera file or preset, khoshelham if it has none",
        DepthNoiseByName(&features->depth.noise), NamesOf(DepthNoiseModels())},
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),
@@ -179,6 +188,10 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        FrontendNames()},
       {"max_features", kFeatures, "features wanted in a reference frame",
        &features->max_features},
+      {"feature_noise", kFeatures,
+       "noise of features in the image, as a factor of what the frontend "
+       "states; rgbd_calibrate measures it",
+       &features->feature_noise},
       {"min_depth", kFeatures, "smaller depths (m) are ignored",
        &features->depth.min_depth},
       {"max_depth", kFeatures, "larger depths (m) are ignored",

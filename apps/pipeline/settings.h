@@ -45,12 +45,17 @@ struct OdometrySettings {
   OdometryOptions odometry;        // keyframes, lost frames
 };
 
+// The depth noise of the settings; where they say "camera", that of the camera
+// if it is known.
+DepthNoiseModel NoiseFor(const OdometrySettings& settings,
+                         const RgbdCamera& camera);
+
 // Create an estimator, tracker or odometry with these settings. Throw
 // InputError for unknown names and invalid values.
 Estimator MakeEstimator(const EstimatorSettings& settings);
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
-                                     const Camera& camera);
-Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
+                                     const RgbdCamera& camera);
+Odometry MakeOdometry(const OdometrySettings& settings, const RgbdCamera& camera);
 
 // A value that is set by name.
 struct NamedSetting {

@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 
 Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
-           const Camera& camera)
+           const RgbdCamera& camera)
     : settings_(settings),
       odometry_(MakeOdometry(odometry, camera)),
       mapper_(settings.mapping, MakeTracker(odometry, camera)) {

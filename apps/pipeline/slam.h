@@ -65,7 +65,7 @@ class Slam {
  public:
   // Throws InputError for invalid settings.
   Slam(const OdometrySettings& odometry, const SlamSettings& settings,
-       const Camera& camera);
+       const RgbdCamera& camera);
 
   // Starts with maps of the same camera; call it before the first frame. The
   // first frames form a segment of their own, which is joined to the map when

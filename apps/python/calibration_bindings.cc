@@ -24,9 +24,7 @@ static void EachField(PickledBytes* bytes, HeldOutResidual& residual) {
 }
 
 static void EachField(PickledBytes* bytes, DepthNoiseFit& noise) {
-  DepthNoiseModel& model = noise.model;
-  (*bytes)(model.name, model.constant, model.quadratic, model.centre,
-           model.mean_share, noise.constant_sigma, noise.quadratic_sigma,
+  (*bytes)(noise.model, noise.constant_sigma, noise.quadratic_sigma,
            noise.scatter, noise.samples, noise.in_old_sigmas);
 }
 

@@ -150,6 +150,13 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   return result;
 }
 
+// Matches have no camera that could state their noise.
+OdometrySettings EstimateDefaults() {
+  OdometrySettings settings;
+  settings.features.depth.noise = *FindNamed(DepthNoiseModels(), "khoshelham");
+  return settings;
+}
+
 // The rows that concern only matches.
 std::vector<Setting> EstimateTable(OdometrySettings* settings) {
   std::vector<Setting> rows;
@@ -270,7 +277,7 @@ void BindFunction(py::module_* module, const char* name,
       start = RigidFromArray(initial_guess, "initial_guess");
     }
     const std::optional<MotionPrior> prior = PriorFrom(prior_object);
-    OdometrySettings settings;
+    OdometrySettings settings = EstimateDefaults();
     SetFromKeywords(name, keywords, EstimateTable(&settings));
     settings.estimator.options.threads = threads;
     if (threads > kMaxThreads) {
@@ -291,7 +298,7 @@ void BindFunction(py::module_* module, const char* name,
                                          prior.has_value() ? &*prior : nullptr),
                       matches, prev.size());
   };
-  OdometrySettings settings;
+  OdometrySettings settings = EstimateDefaults();
   DefineWithSettings(module, name, estimate, EstimateTable(&settings), doc,
                      py::arg(prev_name), py::arg(cur_name), camera_argument,
                      py::kw_only(), py::arg("initial_guess") = "identity",

@@ -23,7 +23,7 @@ namespace {
 class SharedOdometry : public SharedRun {
  public:
   SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera)
-      : SharedRun(camera, SequenceRun(settings, camera.camera)) {}
+      : SharedRun(camera, SequenceRun(settings, camera)) {}
 
   // See SharedRun::Add.
   TrackedFrame Track(Frame frame, std::optional<double> timestamp,

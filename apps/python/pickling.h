@@ -108,10 +108,15 @@ class PickledBytes {
 
 // Parts of several classes.
 
+inline void EachField(PickledBytes* bytes, DepthNoiseModel& model) {
+  (*bytes)(model.name, model.constant, model.quadratic, model.centre,
+           model.mean_share);
+}
+
 inline void EachField(PickledBytes* bytes, RgbdCamera& c) {
   (*bytes)(c.camera, c.depth_scale, c.depth_correction.inverse_depth_offset,
            c.depth_correction.depth_from_color, c.color_shutter,
-           c.depth_shutter);
+           c.depth_shutter, c.depth_noise);
 }
 
 inline void EachField(PickledBytes* bytes, RelativePose& pose) {

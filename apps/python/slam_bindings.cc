@@ -63,7 +63,7 @@ class SharedSlam : public SharedRun {
  public:
   SharedSlam(const SharedSlamSettings& settings, const RgbdCamera& camera)
       : SharedRun(camera, SequenceRun(settings.odometry, settings.slam,
-                                      camera.camera)) {}
+                                      camera)) {}
 
   // Throws InputError if called after the first frame, for a folder without a
   // map and for a map of another camera.

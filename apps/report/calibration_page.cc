@@ -146,10 +146,10 @@ std::string NoiseInWords(const CalibrationResult& result) {
   return Format(
       "<p>Depth scatters by %.3g times the sigma of --depth_noise%s.</p>\n",
       noise.in_old_sigmas,
-      noise.in_old_sigmas > kMuchNoise
-          ? ": <b>too large for sensor noise</b>; depth is displaced, so do "
-            "not use depth_noise.yaml"
-          : "");
+      noise.IsPlausible()
+          ? ""
+          : ": <b>too large for sensor noise</b>; depth is displaced, so do "
+            "not use depth_noise.yaml");
 }
 
 std::string PathPicture(const Trajectory& path) {

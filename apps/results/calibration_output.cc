@@ -80,6 +80,9 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
     text += WhatIsLeft(result) + "\n" + HalvesInWords(result) + "\n";
+    text += Format("features scatter by %.3g times what the frontend states "
+                   "(--feature_noise)\n",
+                   result.pixel_after);
   }
   if (result.noise.has_value()) {
     const DepthNoiseFit& noise = *result.noise;
@@ -88,7 +91,7 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         "depths), %.3g times that of --depth_noise\n",
         noise.model.constant, noise.model.quadratic, noise.constant_sigma,
         noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
-    if (noise.in_old_sigmas > kMuchNoise) {
+    if (!noise.IsPlausible()) {
       text +=
           "this is too large for sensor noise: depth is displaced; do not use "
           "depth_noise.yaml\n";

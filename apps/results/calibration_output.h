@@ -7,9 +7,6 @@
 
 namespace rgbd_pose {
 
-// Depths that scatter by more than this times their noise model are misplaced.
-constexpr double kMuchNoise = 5.0;
-
 // Calls CalibrateRecording and shows a progress bar for each pass.
 RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
                                            const OdometrySettings& odometry,

@@ -75,8 +75,12 @@ Vector2d InvertEquidistant(const Lens<double>& lens,
 RgbdCamera TumCamera(const Camera& camera, double depth_lead) {
   constexpr Shutter kColor = {-0.0075, 0.028, true};
   constexpr double kDepthReadout = 0.027;
-  return {
-      camera, 5000.0, {}, kColor, {kColor.offset - depth_lead, kDepthReadout}};
+  return {camera,
+          5000.0,
+          {},
+          kColor,
+          {kColor.offset - depth_lead, kDepthReadout},
+          *FindNamed(DepthNoiseModels(), "kinect")};
 }
 
 const Named<RgbdCamera> kPresets[] = {

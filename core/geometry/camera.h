@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/depth_noise.h"
 #include "core/geometry/lens.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"
@@ -135,17 +136,20 @@ struct DepthCorrection {
   Rigid3d depth_from_color = {};
 };
 
-// A camera with the unit and errors of its depth images and exposure times.
+// A camera with the unit, errors and noise of its depth images and its exposure
+// times.
 struct RgbdCamera {
   Camera camera;                // of the colour image
   double depth_scale = 5000.0;  // raw units of the depth image per metre
   DepthCorrection depth_correction = {};  // of its errors
   Shutter color_shutter = {};             // relative to the colour timestamp
   Shutter depth_shutter = {};             // relative to the depth timestamp
+  std::optional<DepthNoiseModel> depth_noise = {};  // nothing if unknown
 };
 
 // A camera by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Values from the
-// calibration page of the TUM RGB-D benchmark. Empty if the name is unknown.
+// calibration page of the TUM RGB-D benchmark, depth noise kinect. Empty if the
+// name is unknown.
 std::optional<RgbdCamera> CameraPreset(std::string_view name);
 
 // The names that CameraPreset knows.

@@ -22,8 +22,8 @@ std::string DepthNoiseModel::Check() const {
 
 const std::vector<DepthNoiseModel>& DepthNoiseModels() {
   static const auto& models = *new std::vector<DepthNoiseModel>{
-      {"khoshelham", 0.0, 1.425e-3},
-      {"nguyen", 0.0012, 0.0019, 0.4},
+      {"camera", 0.0, 1.425e-3},     {"kinect", 0.0008, 0.0029, 0.0, 0.95},
+      {"khoshelham", 0.0, 1.425e-3}, {"nguyen", 0.0012, 0.0019, 0.4},
       {"constant", 0.005},
   };
   return models;

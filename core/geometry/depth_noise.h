@@ -32,6 +32,9 @@ struct DepthNoiseModel {
 };
 
 // All depth noise models, for FindNamed:
+//   camera      that of the camera (RgbdCamera); khoshelham if it has none
+//   kinect      0.0008 + 0.0029 z^2, Kinect v1 where features are; neighbours
+//               err alike (rgbd_calibrate with real recordings)
 //   khoshelham  1.425e-3 z^2, Kinect v1 (Khoshelham & Elberink 2012)
 //   nguyen      0.0012 + 0.0019 (z - 0.4)^2, Kinect v1, head on (Nguyen, Izadi
 //               & Lovell 2012)

@@ -13,7 +13,7 @@ int main() {
 
   // Keyframes that show the same, and the path between them.
   const auto odometry = rgbd_pose::CalibrationOdometry();
-  rgbd_pose::Slam slam(odometry, rgbd_pose::CalibrationSlam(), camera.camera);
+  rgbd_pose::Slam slam(odometry, rgbd_pose::CalibrationSlam(), camera);
   std::vector<rgbd_pose::SlamFrame> frames;
   for (int i = 0; i < room.size(); ++i) {
     frames.push_back(slam.Track(room.Read(i)));

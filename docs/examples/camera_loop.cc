@@ -9,7 +9,7 @@ int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours
   const rgbd_pose::OdometrySettings settings;
   rgbd_pose::Odometry odometry =
-      rgbd_pose::MakeOdometry(settings, camera.camera().camera);
+      rgbd_pose::MakeOdometry(settings, camera.camera());
   rgbd_pose::Frame frame;  // its memory serves for all of them
   for (int i = 0; i < camera.size(); ++i) {
     const rgbd_pose::Frame images = camera.Read(i);

@@ -9,7 +9,7 @@
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours
   const rgbd_pose::OdometrySettings settings;
-  rgbd_pose::Slam slam(settings, {}, camera.camera().camera);
+  rgbd_pose::Slam slam(settings, {}, camera.camera());
   for (int i = 0; i < camera.size(); ++i) {
     const rgbd_pose::SlamFrame frame = slam.Track(camera.Read(i));
     // frame.odom_from_cam never jumps; frame.map_from_cam() is corrected.

@@ -43,8 +43,7 @@ class RealSense final : public rgbd_pose::FrameSource {
 
 int main() {
   rgbd_pose::LatestFrame frames(std::make_unique<RealSense>());
-  rgbd_pose::Odometry odometry =
-      rgbd_pose::MakeOdometry({}, frames.camera().camera);
+  rgbd_pose::Odometry odometry = rgbd_pose::MakeOdometry({}, frames.camera());
   for (int i = 0; i < 900; ++i) {
     const auto tracked = odometry.Track(frames.Next()->read());
     const auto& at = tracked.world_from_cam.translation;

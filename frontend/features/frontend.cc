@@ -28,6 +28,9 @@ std::string FrontendOptions::Check() const {
   if (max_features < 3 || max_features > 1000000) {
     return "max_features must be 3 to 1000000";
   }
+  if (!(feature_noise >= 0.01 && feature_noise <= 100.0)) {
+    return "feature_noise must be 0.01 to 100";
+  }
   return depth.Check();
 }
 

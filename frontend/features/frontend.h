@@ -25,6 +25,9 @@ struct FrontendOptions {
   // The number of features wanted in a reference frame.
   int max_features = 600;
 
+  // Factor of the localisation noise that a frontend states for its features.
+  double feature_noise = 1.0;
+
   // Returns one line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
@@ -99,8 +102,8 @@ class Frontend {
   // Returns the observation of an image point (px, distorted) of a frame.
   Observation ObserveAt(const Frame& frame, const cv::Point2f& point,
                         double sigma_px) const {
-    return Observe(frame, options_.camera, point.x, point.y, sigma_px,
-                   options_.depth);
+    return Observe(frame, options_.camera, point.x, point.y,
+                   options_.feature_noise * sigma_px, options_.depth);
   }
 
   const FrontendOptions options_;  // as given to the constructor

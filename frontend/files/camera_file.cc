@@ -168,11 +168,28 @@ DepthCorrection ReadDepthCorrection(const YamlSection& file) {
   return errors;
 }
 
+std::optional<DepthNoiseModel> ReadDepthNoise(const YamlSection& file) {
+  constexpr char kKey[] = "depth_noise";
+  if (!file.Has(kKey)) return std::nullopt;
+  const std::vector<double> values = file.Numbers(kKey, {4});
+  DepthNoiseModel noise = {"camera", values[0], values[1], values[2],
+                           values[3]};
+  if (const std::string error = noise.Check(); !error.empty()) {
+    file.Fail(kKey, "(constant, quadratic, centre, mean_share): " + error);
+  }
+  CheckSize(file, kKey, noise.sigma(1.0), 1.0, "m for a depth of 1 m");
+  return noise;
+}
+
 }  // namespace
 
 RgbdCamera RegisteredCamera(const CameraSetup& setup) {
-  return {setup.camera, setup.depth_scale.value_or(RgbdCamera{}.depth_scale),
-          setup.depth_correction, setup.color_shutter, setup.depth_shutter};
+  return {setup.camera,
+          setup.depth_scale.value_or(RgbdCamera{}.depth_scale),
+          setup.depth_correction,
+          setup.color_shutter,
+          setup.depth_shutter,
+          setup.depth_noise};
 }
 
 CameraSetup ReadCameraFile(const std::string& path,
@@ -187,6 +204,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   const std::optional<double> depth_scale = ReadDepthScale(file);
   camera.depth_correction = ReadDepthCorrection(file);
   ReadShutters(file, &camera);
+  camera.depth_noise = ReadDepthNoise(file);
   CameraSetup result(camera);
   result.depth_scale = depth_scale;
   RequireSound(result.camera.Check(), path + ": ");

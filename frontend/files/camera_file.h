@@ -19,7 +19,8 @@ struct CameraSetup {
         depth_scale(rgbd.depth_scale),
         depth_correction(rgbd.depth_correction),
         color_shutter(rgbd.color_shutter),
-        depth_shutter(rgbd.depth_shutter) {}
+        depth_shutter(rgbd.depth_shutter),
+        depth_noise(rgbd.depth_noise) {}
 
   Camera camera;  // of the colour image
 
@@ -29,6 +30,8 @@ struct CameraSetup {
   DepthCorrection depth_correction;  // see RgbdCamera
   Shutter color_shutter;             // see RgbdCamera
   Shutter depth_shutter;             // see RgbdCamera
+
+  std::optional<DepthNoiseModel> depth_noise;  // see RgbdCamera
 
   // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;
@@ -53,7 +56,9 @@ RgbdCamera RegisteredCamera(const CameraSetup& setup);
 // depth units per metre); with the default 0 exposure times of rows (s, see
 // Shutter), color_time_offset, color_readout, depth_time_offset, depth_readout,
 // and errors of depth (see DepthCorrection), inverse_depth_offset (1/m),
-// depth_rotation (rotation vector, rad), depth_translation (m).
+// depth_rotation (rotation vector, rad), depth_translation (m); depth_noise, a
+// list of constant (m), quadratic (1/m), centre (m) and mean_share of a
+// DepthNoiseModel.
 // `depth_camera` is the name of the depth camera in a Kalibr file: cam0 if
 // depth is registered to colour, otherwise a later one. These have T_cn_cnm1,
 // the transform from the camera before. Empty: registered, but an error for a

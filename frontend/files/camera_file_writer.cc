@@ -23,12 +23,19 @@ using YamlLines =
 constexpr const char* kRgbdKeys[] = {"color_time_offset",    "color_readout",
                                      "depth_time_offset",    "depth_readout",
                                      "inverse_depth_offset", "depth_rotation",
-                                     "depth_translation"};
+                                     "depth_translation",    "depth_noise"};
 
-std::string List(const Eigen::Vector3d& v) {
-  return "[" +
-         Join({ShortNumber(v.x()), ShortNumber(v.y()), ShortNumber(v.z())}) +
-         "]";
+std::string List(const Eigen::VectorXd& values) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(ShortNumber(value));
+  return "[" + Join(texts) + "]";
+}
+
+// As in the list of a camera file; zeros if the noise is unknown.
+Eigen::Vector4d NoiseOf(const RgbdCamera& camera) {
+  if (!camera.depth_noise.has_value()) return Eigen::Vector4d::Zero();
+  const DepthNoiseModel& noise = *camera.depth_noise;
+  return {noise.constant, noise.quadratic, noise.centre, noise.mean_share};
 }
 
 // The lines with these keys.
@@ -50,6 +57,7 @@ std::string RgbdLines(const RgbdCamera& camera) {
     add("depth_rotation", List(RotationVector(moved.rotation)));
     add("depth_translation", List(moved.translation));
   }
+  if (camera.depth_noise.has_value()) add("depth_noise", List(NoiseOf(camera)));
   return lines;
 }
 
@@ -213,6 +221,7 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
          has_known_times(read) == has_known_times(camera) &&
          is_same(read.depth_scale, camera.depth_scale) &&
          is_same(errors.inverse_depth_offset, wanted.inverse_depth_offset) &&
+         is_same((NoiseOf(read) - NoiseOf(camera)).norm(), 0.0) &&
          is_same(between.Angle(), 0.0) &&
          is_same(between.translation.norm(), 0.0);
 }

@@ -19,7 +19,7 @@ struct DepthSample {
 // Which depths are used, and how uncertain they are.
 struct DepthLookupOptions {
   // Noise of single pixels.
-  DepthNoiseModel noise = *FindNamed(DepthNoiseModels(), "khoshelham");
+  DepthNoiseModel noise = *FindNamed(DepthNoiseModels(), "camera");
 
   double min_depth = 0.3;  // m
   double max_depth = 8.0;  // m

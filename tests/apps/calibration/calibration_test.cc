@@ -43,7 +43,7 @@ std::vector<Frame> Render(const std::string& path, int frames,
 struct Mapped {
   Mapped(const std::vector<Frame>& frames, const RgbdCamera& camera)
       : first(camera) {
-    Slam slam(CalibrationOdometry(), CalibrationSlam(), first.camera);
+    Slam slam(CalibrationOdometry(), CalibrationSlam(), first);
     std::vector<SlamFrame> tracked;
     for (const Frame& frame : frames) {
       tracked.push_back(slam.Track(CorrectDepth(first, frame)));
@@ -109,6 +109,10 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_EQ(Of(result, kDepthTime).before, -0.01);
   EXPECT_EQ(Of(result, kDepthTime).found, result.camera.depth_shutter.offset);
   EXPECT_LT(result.cost_after, result.cost_before);
+  // The camera has its noise, too.
+  ASSERT_TRUE(result.camera.depth_noise.has_value());
+  EXPECT_EQ(result.camera.depth_noise->sigma(2.0),
+            result.noise->model.sigma(2.0));
   // Parameters that were right are unchanged.
   EXPECT_EQ(result.camera.camera.k1, truth.k1);
   EXPECT_EQ(result.camera.color_shutter.readout, 0.0);

@@ -79,6 +79,17 @@ TEST(SettingTableTest, NamesReachTheOptions) {
   ExpectInputError([&] { set("scale", "iqr"); }, {"scale", "'iqr'", "mad"});
 }
 
+TEST(NoiseForTest, IsThatOfTheCameraUnlessOneIsChosen) {
+  OdometrySettings settings;
+  const RgbdCamera kinect = *CameraPreset("tum_fr1");
+  EXPECT_EQ(NoiseFor(settings, kinect).name, "kinect");
+  EXPECT_EQ(NoiseFor(settings, {}).sigma(2.0),
+            FindNamed(DepthNoiseModels(), "khoshelham")->sigma(2.0));
+  EXPECT_EQ(MakeTracker(settings, kinect)->images().depth.noise.name, "kinect");
+  settings.features.depth.noise = *FindNamed(DepthNoiseModels(), "nguyen");
+  EXPECT_EQ(NoiseFor(settings, kinect).name, "nguyen");
+}
+
 TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
   const auto refused = [](const char* name, double value) {
     OdometrySettings settings;
@@ -89,11 +100,12 @@ TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
     } else {
       *std::get<double*>(row.value) = value;
     }
-    ExpectInputError([&] { MakeOdometry(settings, Camera()); }, {name});
+    ExpectInputError([&] { MakeOdometry(settings, {}); }, {name});
   };
   refused("gnc_factor", 1.0);
   refused("max_iterations", 0.0);
   refused("max_features", 2.0);
+  refused("feature_noise", 0.0);
   refused("min_inliers", 2.0);
   refused("max_flow_px", 0.0);
   refused("new_segment_after", -1.0);

@@ -58,7 +58,7 @@ const WalkSequence& Walk() {
 class Player {
  public:
   explicit Player(const SlamSettings& settings = {})
-      : slam(OdometrySettings(), settings, SmallCamera().camera) {}
+      : slam(OdometrySettings(), settings, SmallCamera()) {}
 
   void Play(const std::vector<int>& order) {
     for (const int i : order) {
@@ -283,7 +283,7 @@ struct RollingWalk {
 // one moment with the velocity estimated from the next frame.
 TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
   const RollingWalk walk;
-  Slam slam(walk.settings, {}, SmallCamera().camera);
+  Slam slam(walk.settings, {}, SmallCamera());
   std::map<int, Frame> rectified;
   for (const Frame& frame : walk.frames) {
     const TrackedFrame tracked = slam.Track(frame).tracked;
@@ -315,7 +315,7 @@ TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
   const RollingWalk walk;
   std::string first;
   for (const int threads : {1, 1, 3}) {
-    Slam slam(walk.settings, {}, SmallCamera().camera);
+    Slam slam(walk.settings, {}, SmallCamera());
     std::vector<PreparedFrame> frames;
     std::vector<std::future<void>> ahead;
     for (const Frame& frame : walk.frames) {

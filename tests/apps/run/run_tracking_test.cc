@@ -59,7 +59,7 @@ class RunTrackingTest : public testing::Test {
   std::string Track(bool is_recording, std::function<void()> event) {
     EventfulSource source(is_recording, fy_, std::move(event));
     const OdometrySettings settings;
-    SequenceRun run(settings, source.camera().camera);
+    SequenceRun run(settings, source.camera());
     RunOutputSettings files;
     files.output = folder_ / "run";
     RunOutput output(files, source, settings.features.depth);

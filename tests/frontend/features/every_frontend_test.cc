@@ -34,6 +34,23 @@ TEST_P(EveryFrontendTest, FindsFeaturesAgain) {
   ExpectMostlyRight(found, 100, 1.0, 4.0);
 }
 
+TEST_P(EveryFrontendTest, TakesTheNoiseThatItIsGiven) {
+  const FeatureMatches stated =
+      MatchFrom(dataset_.Read(kPrev), dataset_.Read(kCur), cur_from_prev_);
+  FrontendOptions options = frontend_->options();
+  options.feature_noise = 0.5;
+  frontend_ = MakeFrontend(GetParam(), options);
+  const FeatureMatches half =
+      MatchFrom(dataset_.Read(kPrev), dataset_.Read(kCur), cur_from_prev_);
+  ASSERT_EQ(half.features, stated.features);
+  for (size_t i = 0; i < half.matches.size(); ++i) {
+    EXPECT_EQ(half.matches[i].prev.sigma_px,
+              0.5 * stated.matches[i].prev.sigma_px);
+    EXPECT_EQ(half.matches[i].cur.sigma_px,
+              0.5 * stated.matches[i].cur.sigma_px);
+  }
+}
+
 // The frontend predicts positions with its own camera, not with the camera of
 // the matches.
 TEST_P(EveryFrontendTest, LooksWhereItsOwnCameraSees) {

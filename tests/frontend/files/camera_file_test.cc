@@ -271,7 +271,10 @@ TEST(CameraFileTest, TimesAndDepthErrorsAreNoLargerThanTheyCanBe) {
       {"inverse_depth_offset: 7", "inverse_depth_offset must be at most 0.5"},
       {"depth_rotation: [0.3, 0, 30]", "depth_rotation must be at most 0.5"},
       {"depth_translation: [5, 0, 0]", "depth_translation must be at most"},
-      {"depth_translation: [5, 0]", "depth_translation"}};
+      {"depth_translation: [5, 0]", "depth_translation"},
+      {"depth_noise: [0, 0.0025]", "depth_noise"},
+      {"depth_noise: [0, -0.0025, 0, 1]", "depth_noise (constant, quadratic"},
+      {"depth_noise: [0, 2.5, 0, 1]", "depth_noise must be at most 1 m"}};
   for (const auto& bad : kCases) {
     const TempFolder folder;
     const std::string path =

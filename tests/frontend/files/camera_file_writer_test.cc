@@ -28,6 +28,7 @@ RgbdCamera Changed(const RgbdCamera& first) {
   camera.depth_correction.depth_from_color = Rigid3d(
       Eigen::Quaterniond(Eigen::AngleAxisd(0.0052, Eigen::Vector3d::UnitY())),
       {0.005, -0.001, 0.002});
+  camera.depth_noise = {"", 0.0012, 0.0025, 0.4, 0.95};
   return camera;
 }
 
@@ -52,6 +53,11 @@ void ExpectEqual(const RgbdCamera& a, const RgbdCamera& b) {
               0.0, 1e-9);
   EXPECT_TRUE(a.depth_correction.depth_from_color.translation.isApprox(
       b.depth_correction.depth_from_color.translation, 1e-9));
+  ASSERT_EQ(a.depth_noise.has_value(), b.depth_noise.has_value());
+  if (!a.depth_noise.has_value()) return;
+  EXPECT_EQ(a.depth_noise->sigma(2.0), b.depth_noise->sigma(2.0));
+  EXPECT_EQ(a.depth_noise->centre, b.depth_noise->centre);
+  EXPECT_EQ(a.depth_noise->mean_share, b.depth_noise->mean_share);
 }
 
 class EveryLayoutTest : public testing::TestWithParam<const char*> {};
@@ -68,6 +74,7 @@ TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
   camera.color_shutter = {0.0, -0.1};
   camera.depth_shutter = {};
   camera.depth_correction.depth_from_color = Rigid3d();
+  camera.depth_noise.reset();
   const std::string third =
       folder.Write("third.yaml", FormatCameraFile(camera, second));
   ExpectEqual(ResolveCamera(third), camera);

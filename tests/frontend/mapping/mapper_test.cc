@@ -22,7 +22,7 @@ Keyframe Noise(int id) {
 // With the thousands of keyframes of an hour, updates contain only moved ones.
 TEST(MapperTest, TellsOfEachKeyframeOnce) {
   const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
-  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));
+  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), {camera}));
   for (const int id : {3, 7}) {
     const MapUpdate update = mapper.Add(Noise(id), {});
     ASSERT_EQ(update.moved.size(), 1u);
@@ -36,7 +36,7 @@ TEST(MapperTest, TellsOfEachKeyframeOnce) {
 // Tracked against two segments: a loaded map and the segment before.
 TEST(MapperTest, TrackedEdgesJoinSegments) {
   const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
-  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));
+  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), {camera}));
   mapper.Add(Noise(3), {});
   mapper.Add(Noise(7), {});
   std::vector<RelativePose> edges;
