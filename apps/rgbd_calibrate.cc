@@ -40,10 +40,11 @@ ProgramInfo Info(ProgramSettings* settings) {
 }
 
 std::string FormatResiduals(const CalibrationResult& result) {
-  std::string text = "u,v,before_u,before_v,after_u,after_v\n";
+  std::string text = "u,v,before_u,before_v,after_u,after_v,flow_u,flow_v\n";
   for (const HeldOutResidual& r : result.residuals) {
-    text += Format("%.2f,%.2f,%.4f,%.4f,%.4f,%.4f\n", r.u, r.v, r.before.x(),
-                   r.before.y(), r.after.x(), r.after.y());
+    text += Format("%.2f,%.2f,%.4f,%.4f,%.4f,%.4f,%.2f,%.2f\n", r.u, r.v,
+                   r.before.x(), r.before.y(), r.after.x(), r.after.y(),
+                   r.flow.x(), r.flow.y());
   }
   return text;
 }

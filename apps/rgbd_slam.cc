@@ -101,8 +101,8 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                    has_camera ? &found->result.camera : nullptr);
   Warn(sequence.remarks);
   if (!settings.save_map.empty()) RequireMapFolder(settings.save_map);
-  SequenceRun run(settings.odometry, settings.slam,
-                  sequence.source->camera(), sequence.inputs);
+  SequenceRun run(settings.odometry, settings.slam, sequence.source->camera(),
+                  sequence.inputs);
   LoadMaps(settings, run.slam());
   return TrackAndWrite(settings, info, start, &sequence, &run, found);
 }

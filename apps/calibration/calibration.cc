@@ -55,7 +55,7 @@ constexpr double kMaxSpread = 4.0;
 
 // The steps of Calibrate and what they share.
 struct CalibrationSteps {
-  // As given to Calibrate; the depth noise is that of the first camera.
+  // As given to Calibrate.
   const KeyframeMap& map;
   const RgbdCamera& first;
   const OdometrySettings& odometry;
@@ -263,11 +263,10 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known) {
   RequireSound(settings.Check(), "calibration: ");
-  OdometrySettings with_noise = odometry;
-  with_noise.features.depth.noise = NoiseFor(odometry, first);
+  OdometrySettings relative = odometry;
   // The spread of pixels is measured relative to what the frontend states.
-  with_noise.features.feature_noise = 1.0;
-  CalibrationSteps steps{map, first, with_noise, settings, threads};
+  relative.features.feature_noise = 1.0;
+  CalibrationSteps steps{map, first, relative, settings, threads};
   CalibrationResult& result = steps.result;
   steps.Collect(path, scale, known != nullptr ? *known : first);
   constexpr int kMinViews = 100;

@@ -32,8 +32,9 @@ struct CalibratedParameter {
 struct HeldOutResidual {
   double u = 0.0;          // column in the image
   double v = 0.0;          // row in the image
-  Eigen::Vector2d before;  // with the first camera
+  Eigen::Vector2d before;  // with the first camera: predicted - seen
   Eigen::Vector2d after;   // with the camera found
+  Eigen::Vector2d flow;    // motion in the image, px/s
 };
 
 // The estimates of one parameter from the first and from the second half of a

@@ -108,6 +108,11 @@ RecordingCalibration CalibrateRecording(
   SequenceSettings part = sequence;
   OdometrySettings with_shutter = odometry;
   with_shutter.odometry.shutter = ShutterUse::kCamera;
+  // The same for all cameras and passes: scatter is measured relative to it.
+  DepthNoiseModel& noise = with_shutter.features.depth.noise;
+  if (noise.name == "camera") {
+    noise = *FindNamed(DepthNoiseModels(), "khoshelham");
+  }
   if (part.frames.empty()) {
     part.frames =
         Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
@@ -119,10 +124,7 @@ RecordingCalibration CalibrateRecording(
     known->color_shutter = known->depth_shutter = Shutter();
   }
   for (int pass = 1;; ++pass) {
-    if (pass > 1) {
-      known = all.result.camera;
-      known->depth_noise = first.depth_noise;  // what scatter is compared with
-    }
+    if (pass > 1) known = all.result.camera;
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
     const int frames = static_cast<int>(opened.source->timestamps().size());

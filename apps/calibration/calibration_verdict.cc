@@ -52,6 +52,23 @@ double CostOf(const CalibrationViews& views, const LandmarkView& view,
   return 0.5 * cost;
 }
 
+// The motion (px/s) in the image of the i-th landmark in a view.
+Eigen::Vector2d FlowOf(const CalibrationViews& views, const LandmarkView& view,
+                       const CalibrationState& state,
+                       const std::vector<MotionDerivatives>& poses, size_t i) {
+  const Landmark& landmark = views.landmarks[i];
+  const double d = state.inverse_depths[i];
+  const double* const theta = state.theta.data();
+  const Eigen::Vector3d X =
+      InView<double>(poses[landmark.anchor], poses[view.keyframe], d, theta,
+                     DataOf(views, landmark, view, state)) /
+      d;
+  Eigen::Vector3d v;
+  views.twists[view.keyframe].PointVelocity(X.data(), v.data());
+  return {theta[kFx] * (v.x() - X.x() / X.z() * v.z()) / X.z(),
+          theta[kFy] * (v.y() - X.y() / X.z() * v.z()) / X.z()};
+}
+
 // The parameter whose halves differ most; null if the halves were not compared.
 const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
   const auto worst = std::max_element(
@@ -90,7 +107,8 @@ void CompareHeldOut(const CalibrationViews& views_before,
       const bool with_depth = view->depth.inverse_sigma > 0.0 &&
                               view_after.depth.inverse_sigma > 0.0;
       OfPair& pair = pairs[std::minmax(landmark.anchor, view->keyframe)];
-      HeldOutResidual residual = {view->u, view->v, {}, {}};
+      HeldOutResidual residual = {view->u, view->v, {}, {}, {}};
+      residual.flow = FlowOf(views_after, view_after, after, poses_after, i);
       pair.before += CostOf(views_before, *view, with_depth, before,
                             poses_before, i, after, &residual.before);
       pair.after += CostOf(views_after, view_after, with_depth, after,

@@ -55,7 +55,8 @@ DepthNoiseModel NoiseFor(const OdometrySettings& settings,
 Estimator MakeEstimator(const EstimatorSettings& settings);
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                                      const RgbdCamera& camera);
-Odometry MakeOdometry(const OdometrySettings& settings, const RgbdCamera& camera);
+Odometry MakeOdometry(const OdometrySettings& settings,
+                      const RgbdCamera& camera);
 
 // A value that is set by name.
 struct NamedSetting {

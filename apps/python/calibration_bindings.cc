@@ -20,7 +20,8 @@ namespace py = pybind11;
 
 namespace rgbd_pose {
 static void EachField(PickledBytes* bytes, HeldOutResidual& residual) {
-  (*bytes)(residual.u, residual.v, residual.before, residual.after);
+  (*bytes)(residual.u, residual.v, residual.before, residual.after,
+           residual.flow);
 }
 
 static void EachField(PickledBytes* bytes, DepthNoiseFit& noise) {

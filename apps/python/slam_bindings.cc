@@ -62,8 +62,8 @@ std::vector<Setting> SettingTable(SharedSlamSettings* settings) {
 class SharedSlam : public SharedRun {
  public:
   SharedSlam(const SharedSlamSettings& settings, const RgbdCamera& camera)
-      : SharedRun(camera, SequenceRun(settings.odometry, settings.slam,
-                                      camera)) {}
+      : SharedRun(camera,
+                  SequenceRun(settings.odometry, settings.slam, camera)) {}
 
   // Throws InputError if called after the first frame, for a folder without a
   // map and for a map of another camera.

@@ -4,6 +4,7 @@
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/figures/svg_chart.h"
 #include "apps/report/report_page.h"
+#include "apps/report/residual_pictures.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
 
@@ -11,9 +12,6 @@ namespace rgbd_pose {
 namespace {
 
 using Status = CalibratedParameter::Status;
-
-// Number of image columns over which residuals are averaged.
-constexpr int kCells = 16;
 
 constexpr double kPictureWidth = 440.0;
 
@@ -85,47 +83,6 @@ std::string ParameterTable(const CalibrationResult& result) {
   return text + "</table>\n";
 }
 
-// Mean residuals per image cell as arrows, enlarged by `zoom`.
-std::string Picture(const CalibrationResult& result, bool after, double zoom) {
-  const Camera& camera = result.camera.camera;
-  const double cell = static_cast<double>(camera.width) / kCells;
-  const int rows = static_cast<int>(std::ceil(camera.height / cell));
-  std::vector<Eigen::Vector2d> sums(kCells * rows, Eigen::Vector2d::Zero());
-  std::vector<int> counts(kCells * rows, 0);
-  for (const HeldOutResidual& residual : result.residuals) {
-    const int column = static_cast<int>(residual.u / cell);
-    const int row = static_cast<int>(residual.v / cell);
-    if (column < 0 || row < 0 || column >= kCells || row >= rows) continue;
-    const Eigen::Vector2d& r = after ? residual.after : residual.before;
-    // Wrong matches would dominate the picture.
-    constexpr double kMostPx = 20.0;
-    if (!(r.norm() < kMostPx)) continue;
-    sums[row * kCells + column] += r;
-    ++counts[row * kCells + column];
-  }
-  const double scale = kPictureWidth / camera.width;
-  std::string text = Format("<figure><svg width=\"%.0f\" height=\"%.0f\">",
-                            kPictureWidth, camera.height * scale);
-  constexpr int kFew = 3;
-  for (int i = 0; i < kCells * rows; ++i) {
-    if (counts[i] < kFew) continue;
-    const Eigen::Vector2d mean = sums[i] / counts[i] * zoom;
-    const int column = i % kCells, row = i / kCells;
-    const double u = (column + 0.5) * cell * scale;
-    const double v = (row + 0.5) * cell * scale;
-    text += Format(
-        "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" "
-        "stroke=\"#d62728\" stroke-width=\"1.5\"/><circle cx=\"%.1f\" "
-        "cy=\"%.1f\" r=\"2\" fill=\"#555\"/>",
-        u, v, u + mean.x() * scale, v + mean.y() * scale, u, v);
-  }
-  return text + Format(
-                    "</svg><figcaption>Mean residuals %s, enlarged %.0f times"
-                    "</figcaption></figure>\n",
-                    after ? "with the camera found" : "with the first camera",
-                    zoom);
-}
-
 // After a camera was rejected.
 constexpr char kWhatNext[] =
     "<p>What to do next:</p><ul>"
@@ -144,7 +101,7 @@ std::string NoiseInWords(const CalibrationResult& result) {
   if (!result.noise.has_value()) return "";
   const DepthNoiseFit& noise = *result.noise;
   return Format(
-      "<p>Depth scatters by %.3g times the sigma of --depth_noise%s.</p>\n",
+      "<p>Depth scatters by %.3g times the sigma that was assumed%s.</p>\n",
       noise.in_old_sigmas,
       noise.IsPlausible()
           ? ""
@@ -207,9 +164,7 @@ std::string CalibrationPage(const CalibrationResult& result,
         std::abs(change), result.cost_before, result.cost_after,
         std::abs(result.gain_sigmas));
     text += "<p>Check: " + HalvesInWords(result) + ".</p>\n";
-    const double spread = std::max(0.5 * result.pixel_before, 1e-3);
-    const double zoom = std::clamp(std::round(10.0 / spread), 1.0, 200.0);
-    text += Picture(result, false, zoom) + Picture(result, true, zoom);
+    text += ResidualPictures(result);
   }
   return text + PathPicture(path) + "</body></html>\n";
 }

@@ -80,15 +80,16 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
     text += WhatIsLeft(result) + "\n" + HalvesInWords(result) + "\n";
-    text += Format("features scatter by %.3g times what the frontend states "
-                   "(--feature_noise)\n",
-                   result.pixel_after);
+    text += Format(
+        "features scatter by %.3g times what the frontend states "
+        "(--feature_noise)\n",
+        result.pixel_after);
   }
   if (result.noise.has_value()) {
     const DepthNoiseFit& noise = *result.noise;
     text += Format(
         "depth noise: sigma(z) = %.3g m + %.4g z^2 / m (+- %.2g, %.2g; %d "
-        "depths), %.3g times that of --depth_noise\n",
+        "depths), %.3g times what was assumed\n",
         noise.model.constant, noise.model.quadratic, noise.constant_sigma,
         noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
     if (!noise.IsPlausible()) {
