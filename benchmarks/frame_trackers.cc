@@ -24,8 +24,8 @@ OdometrySettings TrackedBy(const char* tracker) {
 
 class OurTracker : public FrameTracker {
  public:
-  OurTracker(const char* tracker, const Camera& camera)
-      : odometry_(MakeOdometry(TrackedBy(tracker), {camera})) {}
+  OurTracker(const char* tracker, const RgbdCamera& camera)
+      : odometry_(MakeOdometry(TrackedBy(tracker), camera)) {}
 
   std::optional<Rigid3d> Track(const BenchmarkFrame& frame) override {
     const TrackedFrame tracked = odometry_.Track(frame.frame);
@@ -39,12 +39,15 @@ class OurTracker : public FrameTracker {
 
 #ifdef RGBD_POSE_HAS_OPENCV_RGBD
 
+cv::Mat MatrixOf(const Camera& c) {
+  return cv::Mat(cv::Matx33f(c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1));
+}
+
 template <typename CvOdometry>
 class OpenCvTracker : public FrameTracker {
  public:
-  explicit OpenCvTracker(const Camera& camera)
-      : odometry_(CvOdometry::create(cv::Mat(cv::Matx33f(
-            camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1)))) {}
+  explicit OpenCvTracker(const RgbdCamera& rgbd)
+      : odometry_(CvOdometry::create(MatrixOf(rgbd.camera))) {}
 
   std::optional<Rigid3d> Track(const BenchmarkFrame& frame) override {
     auto cur = cv::rgbd::OdometryFrame::create(frame.frame.gray, frame.depth_m);
@@ -74,18 +77,18 @@ class OpenCvTracker : public FrameTracker {
 
 #endif
 
-std::unique_ptr<FrameTracker> MakeByFeatures(const Camera& camera) {
+std::unique_ptr<FrameTracker> MakeByFeatures(const RgbdCamera& camera) {
   return std::make_unique<OurTracker>("features", camera);
 }
-std::unique_ptr<FrameTracker> MakeDirect(const Camera& camera) {
+std::unique_ptr<FrameTracker> MakeDirect(const RgbdCamera& camera) {
   return std::make_unique<OurTracker>("direct", camera);
 }
-std::unique_ptr<FrameTracker> MakeHybrid(const Camera& camera) {
+std::unique_ptr<FrameTracker> MakeHybrid(const RgbdCamera& camera) {
   return std::make_unique<OurTracker>("hybrid", camera);
 }
 
 template <typename Tracker>
-std::unique_ptr<FrameTracker> Make(const Camera& camera) {
+std::unique_ptr<FrameTracker> Make(const RgbdCamera& camera) {
   return std::make_unique<Tracker>(camera);
 }
 

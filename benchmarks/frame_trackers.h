@@ -33,7 +33,7 @@ class FrameTracker {
 
 struct FrameTrackerType {
   std::string name;
-  std::unique_ptr<FrameTracker> (*make)(const Camera& camera);
+  std::unique_ptr<FrameTracker> (*make)(const RgbdCamera& camera);
 };
 
 // This project's odometry on features, on pixels and on both, otherwise with

@@ -45,7 +45,7 @@ namespace {
 
 struct Sequence {
   std::string name;
-  Camera camera;
+  RgbdCamera camera;
   std::vector<BenchmarkFrame> frames;
   Trajectory truth;
 };
@@ -53,7 +53,7 @@ struct Sequence {
 // Reads or renders all frames before any clock starts.
 Sequence Load(const std::string& name, const Dataset& dataset,
               const Trajectory& truth) {
-  Sequence sequence = {name, dataset.camera().camera, {}, truth};
+  Sequence sequence = {name, dataset.camera(), {}, truth};
   const int count = std::min(FLAGS_frames, dataset.size());
   for (int i = 0; i < count; ++i) {
     sequence.frames.emplace_back(dataset.Read(i));

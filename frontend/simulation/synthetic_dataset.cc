@@ -110,12 +110,14 @@ void CheckCamera(const Camera& camera, const std::string& name) {
   }
 }
 
-// Checks the options and stores the shutters in the camera as well.
+// Checks the options and stores the shutters in the camera as well. The noise
+// is that of the simulation.
 SyntheticOptions Checked(SyntheticOptions options) {
   constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
   options.color_shutter.is_known = true;
   options.camera.color_shutter = options.color_shutter;
   options.camera.depth_shutter = options.depth_shutter;
+  options.camera.depth_noise.reset();
   Require(options.frames >= 1 && options.frames <= kMaxFrames,
           Format("a synthetic sequence has 1 to %d frames, not %d", kMaxFrames,
                  options.frames));

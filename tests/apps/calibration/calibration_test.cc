@@ -205,6 +205,22 @@ SyntheticOptions RollingShutters() {
   return options;
 }
 
+// The readout (s) that the residuals lack: residuals are -flow times the time
+// by which a row is late.
+double ReadoutLeft(const CalibrationResult& result,
+                   Eigen::Vector2d HeldOutResidual::*residual) {
+  const double height = result.camera.camera.height;
+  double along = 0.0, square = 0.0;
+  for (const HeldOutResidual& r : result.residuals) {
+    constexpr double kMostPx = 20.0;
+    if ((r.*residual).norm() > kMostPx) continue;  // a wrong match
+    const Eigen::Vector2d per_second = (r.v / height - 0.5) * r.flow;
+    along -= (r.*residual).dot(per_second);
+    square += per_second.squaredNorm();
+  }
+  return along / square;
+}
+
 TEST(CalibrationTest, FindsShuttersAndClocks) {
   // Fewer frames leave too few held-out pairs for the delay.
   const CalibrationResult result =
@@ -213,6 +229,9 @@ TEST(CalibrationTest, FindsShuttersAndClocks) {
   EXPECT_NEAR(result.camera.color_shutter.readout, 0.028, 3e-3);
   EXPECT_NEAR(result.camera.depth_shutter.readout, 0.022, 3e-3);
   EXPECT_NEAR(result.camera.depth_shutter.offset, -0.015, 1e-3);
+  // Poses compensate most of it in the first camera.
+  EXPECT_GT(ReadoutLeft(result, &HeldOutResidual::before), 1e-3);
+  EXPECT_NEAR(ReadoutLeft(result, &HeldOutResidual::after), 0.0, 3e-4);
 }
 
 TEST(CalibrationTest, ACameraAtRestDoesNotTellItsShutters) {

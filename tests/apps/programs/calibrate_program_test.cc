@@ -66,6 +66,10 @@ TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
       nlohmann::json::parse(ReadTextFile(folder_ / "wrong/metrics.json"));
   EXPECT_TRUE(metrics["calibration"]["accepted"]);
   EXPECT_EQ(metrics["damaged_frames"], 1);
+  EXPECT_THAT(ReadTextFile(folder_ / "wrong/camera.yaml"),
+              HasSubstr("\ndepth_noise: ["));
+  EXPECT_THAT(ReadTextFile(folder_ / "wrong/report.html"),
+              HasSubstr("Exposed later than expected"));
   EXPECT_THAT(wrong.err, HasSubstr("1000.666667.png"));
 
   // Calibrating once more with the camera found changes nothing.
