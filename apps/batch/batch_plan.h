@@ -34,8 +34,7 @@ struct BatchShard {
   }
 };
 
-// A setting that may differ between the runs of a sequence, and is a part of
-// their folder names.
+// A setting that runs of a sequence may vary, and a part of their folder names.
 struct BatchSetting {
   const char* list;    // flag of rgbd_batch with comma-separated values
   const char* flag;    // flag of the program that runs
@@ -73,8 +72,7 @@ std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
                                const std::string& settings);
 
 // Parses a shard "i/n". An empty text means the task of a Slurm job array or,
-// outside of one, the whole batch. Throws InputError for other texts and for
-// arrays with gaps.
+// outside of one, the whole batch. Throws InputError if invalid or with gaps.
 BatchShard ParseShard(const std::string& text);
 
 // Hashes all input of a run on a sequence: rgb.txt, depth.txt, the name and

@@ -18,8 +18,7 @@ constexpr double Camera::*kOfLens[kLensSize] = {
     &Camera::fx, &Camera::fy, &Camera::cx, &Camera::cy, &Camera::k1,
     &Camera::k2, &Camera::k3, &Camera::k4, &Camera::p1, &Camera::p2};
 
-// A camera as calibration parameters: its lens, and no error in corrected
-// depth.
+// A camera as parameters: its lens, and no error in corrected depth.
 CalibrationVector ThetaOf(const Camera& camera) {
   CalibrationVector theta = CalibrationVector::Zero();
   for (int k = 0; k < kLensSize; ++k) theta[k] = camera.*kOfLens[k];
@@ -49,8 +48,7 @@ constexpr std::pair<int, int> kGroups[] = {
     {kRotationX, 6}, {kColorReadout, 2},     {kDepthTime, 1},
 };
 
-// If the halves differ by more than this times their error bars, they
-// contradict each other.
+// Halves that differ by more than this times their error bars are in conflict.
 constexpr double kMaxSpread = 4.0;
 
 // The steps of Calibrate and what they share.

@@ -35,9 +35,8 @@ struct CalibrationSettings {
   double max_halves_sigmas = 4.0;
 
   // The maximum number of frames per second; 0: all. Ignored if a part of the
-  // recording was requested. Near frames add few matches, but velocities, on
-  // which readouts and the delay depend, need them: at 15 frames per second
-  // they are 2 % too small.
+  // recording was requested. Velocities, which tell readouts and the delay,
+  // need near frames: at 15 per second they are 2 % too small.
   double max_rate = 60.0;
 
   // The maximum number of passes (mapping and calibration).
@@ -53,11 +52,10 @@ struct CalibrationSettings {
 // The rows of these settings.
 std::vector<Setting> SettingTable(CalibrationSettings* settings);
 
-// Calibrates a camera from the keyframes and keyframe pairs of its recording.
-// `first` is the camera that the keyframes were tracked with. `path` is a
-// smooth path of all frames, see CollectCalibrationData. `known` is the camera
-// that the priors are centred on; null means `first`. Throws InputError for
-// invalid settings.
+// Calibrates a camera from the keyframes and keyframe pairs of its recording,
+// tracked with the camera `first`. `path`: see CollectCalibrationData. `known`
+// is the camera that the priors are centred on; null means `first`. Throws
+// InputError for invalid settings.
 CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const RgbdCamera& first,
                             const OdometrySettings& odometry,

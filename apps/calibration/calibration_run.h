@@ -31,12 +31,11 @@ struct RecordingCalibration {
   std::vector<std::string> left_out;  // frames and why, see DroppedFrames
 };
 
-// Maps a recording and calibrates its camera from the map. If depth turns out
-// to be displaced by more than a pixel, the camera found was far from the first
-// one; everything is then repeated with the camera found. `on_frame`, which may
-// be empty, is called for each tracked frame with the pass, the number of
-// frames done in this pass and the number of all frames (0: not known in
-// advance). Throws InputError as OpenSequence does, and for invalid settings.
+// Maps a recording and calibrates its camera from the map; again with the
+// camera found if depth was displaced by more than a pixel. `on_frame`, if not
+// empty, is called for each tracked frame with the pass, the number of
+// frames done in it and of all frames (0: not known in advance). Throws
+// InputError as OpenSequence does, and for invalid settings.
 RecordingCalibration CalibrateRecording(
     const SequenceSettings& sequence, const OdometrySettings& odometry,
     const SlamSettings& slam, const CalibrationSettings& settings, int threads,

@@ -83,12 +83,9 @@ FreeParts FreeParameters(const std::string& fix, bool has_scale,
   is_free[kP1] = is_free[kP2] = lens != LensModel::kEquidistant;
   std::stringstream list(fix);
   for (std::string word; std::getline(list, word, ',');) {
-    const auto* const named = FindNamed(names, word);
-    if (named == nullptr) {
-      throw InputError("fix: unknown parameter '" + word +
-                       "'; available: " + Join(NamesOf(names)));
-    }
-    for (const int part : named->value) is_free[part] = false;
+    const auto& row =
+        Located("fix", [&] { return RowOf(names, "parameter", word); });
+    for (const int part : row.value) is_free[part] = false;
   }
   return is_free;
 }

@@ -15,8 +15,7 @@ namespace {
 using LossFigures = std::vector<std::optional<double>>;
 
 // The last pose of a run relative to its first, in the thesis' parameters:
-// alpha, beta, gamma of R = Rz Ry Rx (deg) and C (mm); then the angle of R and
-// |C|.
+// alpha, beta, gamma of R = Rz Ry Rx (deg), C (mm); then the angle of R, |C|.
 LossFigures EndPoseOf(const Trajectory& trajectory) {
   if (trajectory.empty()) return LossFigures(8);
   const Rigid3d first_from_last = trajectory.front().world_from_cam.Inverse() *
@@ -63,8 +62,7 @@ std::string TableRow(const std::string& loss, const LossFigures& figures,
   return text + "\n";
 }
 
-// The truth at the times of all frames, where it has a pose close in time:
-// nowhere if it is empty.
+// The truth at the times of all frames, where it has a pose close in time.
 ComparedPath TruthAt(const std::vector<TrackedFrame>& frames,
                      const Trajectory& truth) {
   const std::vector<double> times = TimesOf(truth);

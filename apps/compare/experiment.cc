@@ -51,11 +51,10 @@ ExperimentResult RunExperiment(const ExperimentSettings& settings,
   if (std::filesystem::is_directory(name, error)) {
     return RunRecorded(settings, output);
   }
-  std::vector<std::string> names = NamesOf(kExperiments);
-  const std::string last = names.back();
-  names.pop_back();
-  throw InputError("--experiment=" + name + " is neither " + Join(names) +
-                   " or " + last + " nor a folder");
+  std::string names = Join(NamesOf(kExperiments));
+  names.replace(names.rfind(", "), 2, " or ");
+  throw InputError("--experiment=" + name + " is neither " + names +
+                   " nor a folder");
 }
 
 std::vector<std::string> ChosenLosses(const ExperimentSettings& settings,

@@ -30,9 +30,8 @@ struct FinishedRun {
   SequenceSettings sequence;  // with which the recording was opened
   DepthLookupOptions depth;   // of the run
 
-  // The poses of all frames that have one. Of each pose: the number of its
-  // frame (row of frames.csv, from 0) and its segment. Segments have unrelated
-  // worlds.
+  // The poses of all frames that have one. Of each: the number of its frame (a
+  // row of frames.csv) and its segment. Segments have unrelated worlds.
   Trajectory trajectory;
   std::vector<int> frames;
   std::vector<int> segments;
@@ -131,8 +130,7 @@ Fusion FusionOf(const Camera& camera, const FinishedRun& run,
   return fusion;
 }
 
-// A folder that is written to a staging folder next to its place and moved
-// there when complete.
+// A folder that is written next to its place and moved there when complete.
 class OutputFolder {
  public:
   // `entries` are the names of everything that will be in the folder. Throws

@@ -62,8 +62,7 @@ struct RunResults {
   }
 };
 
-// Tracks a sequence frame by frame, with an Odometry or a Slam, and collects
-// the results.
+// Tracks a sequence with an Odometry or a Slam, and collects the results.
 class SequenceRun {
  public:
   // With an Odometry. Throws InputError for invalid settings.
@@ -80,8 +79,7 @@ class SequenceRun {
 
   void Add(const StreamedFrame& next);
 
-  // The same for a frame from elsewhere. See Odometry::Track; `guess` may be
-  // null.
+  // The same for any frame; see Odometry::Track. The guess may be null.
   void Add(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess);
 
   // The odometry that tracks the frames and can prepare frames in advance.
@@ -89,8 +87,7 @@ class SequenceRun {
     return slam_ == nullptr ? *odometry_ : slam_->odometry();
   }
 
-  // The map: loaded before the first frame, complete after Finish. Null without
-  // a Slam.
+  // The map, complete after Finish; other maps are loaded first. May be null.
   Slam* slam() const { return slam_.get(); }
 
   // The SLAM results of each frame, without edges (these are in RunResults).

@@ -45,8 +45,7 @@ struct OdometrySettings {
   OdometryOptions odometry;        // keyframes, lost frames
 };
 
-// The depth noise of the settings; where they say "camera", that of the camera
-// if it is known.
+// The depth noise of the settings; for "camera", that of the camera if known.
 DepthNoiseModel NoiseFor(const OdometrySettings& settings,
                          const RgbdCamera& camera);
 
@@ -64,14 +63,12 @@ struct NamedSetting {
   std::function<void(const std::string&)> set;  // InputError if unknown
 };
 
-// A user setting. One row here makes it available to flags, keyword arguments
-// and other interfaces.
+// A user setting. One row makes it available to flags and keyword arguments.
 struct Setting {
   const char* name;        // as users write it
   std::string_view group;  // title of the group of settings
   const char* help;        // meaning and unit
-  // The value that is set. The validity of texts is checked where they are
-  // used.
+  // The value that is set. Texts are checked where they are used.
   std::variant<int*, uint32_t*, double*, bool*, std::string*, NamedSetting>
       value;
   std::vector<std::string> choices = {};  // valid names, if it takes names

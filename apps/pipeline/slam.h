@@ -59,8 +59,7 @@ struct PendingResult {
 
 // Tracks a camera (Odometry) and builds a map of its keyframes in a background
 // thread. When the camera returns to a known place, the path is corrected. The
-// same frames give identical results, byte for byte. An object must be used
-// from one thread only.
+// same frames give the same bytes. An object must be used from one thread only.
 class Slam {
  public:
   // Throws InputError for invalid settings.

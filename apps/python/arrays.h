@@ -84,8 +84,7 @@ decltype(auto) ToPython(const T& value) {
   }
 }
 
-// A getter for a list of numbers: a read-only array without a copy, which keeps
-// `self` alive.
+// A getter for a list of numbers: a read-only view, which keeps `self` alive.
 template <typename Class, auto kMember>
 pybind11::array ViewOf(const pybind11::object& self) {
   const auto& values = self.cast<const Class&>().*kMember;

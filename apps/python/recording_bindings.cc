@@ -101,15 +101,7 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
   });
 }
 
-// The next frame; nothing after the last one.
-std::optional<Frame> NextFrame(FrameSource* source) {
-  const ReleasedGil no_gil;
-  const std::optional<RgbdFrame> next = source->Next();
-  return next.has_value() ? std::make_optional(next->read()) : std::nullopt;
-}
-
-// A getter for an image: a read-only array without a copy, which keeps the
-// frame alive.
+// A getter for an image: a read-only view, which keeps the frame alive.
 template <typename T, auto kImage>
 py::array ArrayOf(const py::object& frame) {
   const cv::Mat& image = frame.cast<const Frame&>().*kImage;
@@ -180,8 +172,11 @@ Raises InputError for unreadable input.)");
       py::arg("associations") = py::none(), py::arg("depth_camera") = "",
       py::arg("depth_scale") = 0.0, py::arg("topics") = py::tuple());
   recording.def("__iter__", [](Recording* self) -> py::iterator {
-    const py::cpp_function next(
-        [source = self->Begin()] { return NextFrame(source.get()); });
+    const py::cpp_function next([source = self->Begin()] {
+      const ReleasedGil no_gil;
+      const std::optional<RgbdFrame> frame = source->Next();
+      return frame ? std::make_optional(frame->read()) : std::nullopt;
+    });
     return py::module_::import("builtins").attr("iter")(next, py::none());
   });
   const auto property = PropertiesOf(&recording);

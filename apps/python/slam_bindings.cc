@@ -91,8 +91,7 @@ class SharedSlam : public SharedRun {
     return FrameInMap(result);
   }
 
-  // Waits for the mapping thread and ends the live page. A second call has no
-  // effect.
+  // Waits for the mapping thread, once, and ends the live page.
   void Finish() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!is_finished_) run_.slam()->Finish();

@@ -54,9 +54,8 @@ class SharedRun {
   SharedRun(const RgbdCamera& camera, SequenceRun run)
       : camera_(camera), run_(std::move(run)) {}
 
-  // Tracks the next frame; those without a timestamp are 1/30 s apart. If time
-  // does not increase, throws InputError and changes nothing. Call with mutex_
-  // locked.
+  // Call with mutex_ locked. Without a timestamp, frames are 1/30 s apart. If
+  // time does not increase, throws InputError and changes nothing.
   void Add(Frame frame, std::optional<double> timestamp, const Rigid3d* guess);
 
   const RgbdCamera camera_;

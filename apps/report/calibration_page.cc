@@ -97,18 +97,6 @@ constexpr char kWhatNext[] =
     "<li>too few pairs, or no parameter determined: record half a minute, turn "
     "and move at the same time, with near and far objects in view.</li></ul>\n";
 
-std::string NoiseInWords(const CalibrationResult& result) {
-  if (!result.noise.has_value()) return "";
-  const DepthNoiseFit& noise = *result.noise;
-  return Format(
-      "<p>Depth scatters by %.3g times the sigma that was assumed%s.</p>\n",
-      noise.in_old_sigmas,
-      noise.IsPlausible()
-          ? ""
-          : ": <b>too large for sensor noise</b>; depth is displaced, so do "
-            "not use depth_noise.yaml");
-}
-
 std::string PathPicture(const Trajectory& path) {
   if (path.size() < 2) return "";
   const auto from_above = [](const StampedPose& pose) {
@@ -147,7 +135,15 @@ std::string CalibrationPage(const CalibrationResult& result,
       Format("<p>%d keyframes, %d pairs, %d landmarks in %d views.</p>\n",
              result.keyframes, result.pairs, result.landmarks, result.views);
   if (!result.is_accepted) text += kWhatNext;
-  text += NoiseInWords(result);
+  if (result.noise.has_value()) {
+    text += Format(
+        "<p>Depth scatters by %.3g times the sigma that was assumed%s.</p>\n",
+        result.noise->in_old_sigmas,
+        result.noise->IsPlausible()
+            ? ""
+            : ": <b>too large for sensor noise</b>; depth is displaced, so do "
+              "not use depth_noise.yaml");
+  }
   text += ParameterTable(result);
   text +=
       result.scale_from.empty()

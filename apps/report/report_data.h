@@ -9,13 +9,11 @@ namespace rgbd_pose {
 // More frames are drawn in groups, to keep the page small.
 constexpr int kMaxReportPoints = 4000;
 
-// All data for the page of a run, from the files in its folder. Frames are
-// stored as columns; unknown numbers are null. Throws InputError for missing or
-// broken files.
+// All data for the page of a run, from the files in its folder: frames as
+// columns, unknown numbers null. Throws InputError for missing or broken files.
 nlohmann::json RunReportData(const std::string& run_folder);
 
-// The same for a batch: the name of its folder and one row per run from
-// summary.csv.
+// The same for a batch: the name of its folder and the rows of summary.csv.
 nlohmann::json BatchReportData(const std::string& batch_folder);
 
 // The same for the poses of all paths of a comparison together.

@@ -8,8 +8,7 @@
 
 namespace rgbd_pose {
 
-// More points or triangles would make the page large and slow to rotate; vertex
-// indices have 16 bits.
+// More would make the page large and slow; vertex indices have 16 bits.
 constexpr int kMaxPreviewPoints = 30000;
 constexpr int kMaxPreviewTriangles = 60000;
 constexpr int kMaxPreviewVertices = 65535;

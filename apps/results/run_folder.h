@@ -24,9 +24,8 @@ class RunFolder {
   // Writes a file into the staging folder. Throws InputError.
   void WriteFile(const char* name, const std::string& content) const;
 
-  // Moves all files to their places, metrics.json last, and removes other
-  // results of an earlier run, including images in debug/. Foreign files stay.
-  // Throws InputError.
+  // Moves all files to their places, metrics.json last, and removes those of an
+  // earlier run, also in debug/, but no foreign files. Throws InputError.
   void Publish();
 
  private:

@@ -18,10 +18,9 @@ nlohmann::json Summarise(const std::vector<TrackedFrame>& frames, int threads,
 std::string FormatSummary(const nlohmann::json& summary);
 
 // For metrics.json: the jumps of the run, at most 20, largest first, and what
-// tracked these frames. At a jump the motion to a frame differs from the mean
-// of its neighbours by more than 10 mm and than six times the median difference
-// (a shaken camera shows such differences without an error). Frames next to a
-// lost frame or a time gap are not checked.
+// tracked these frames. There, the motion to a frame differs from the mean of
+// its neighbours by over 10 mm and over six times the median difference, which
+// grows if the camera shakes. Not checked: frames next to a lost one or a gap.
 nlohmann::json FindJumps(const std::vector<TrackedFrame>& frames);
 
 // Describes the jumps in one line, or empty if there are none.

@@ -12,8 +12,7 @@
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"
 
-// --threads of rgbd_odometry and rgbd_slam, which also have --report and
-// --finish_on_signal.
+// Of rgbd_odometry and rgbd_slam, like --report and --finish_on_signal.
 DECLARE_int32(threads);
 
 namespace rgbd_pose {

@@ -53,14 +53,12 @@ std::vector<std::string> CsvTable::Words(const std::string& column) const {
                      "'; create the file again with this version");
   }
   std::vector<std::string> words;
-  words.reserve(rows_.size());
   for (const std::vector<std::string>& row : rows_) words.push_back(row[place]);
   return words;
 }
 
 std::vector<double> CsvTable::Numbers(const std::string& column) const {
   std::vector<double> numbers;
-  numbers.reserve(rows_.size());
   int line = 2;
   for (const std::string& word : Words(column)) {
     numbers.push_back(word.empty() ? std::numeric_limits<double>::quiet_NaN()

@@ -68,8 +68,7 @@ constexpr char kSpace[] = " \t\v\f\r";
 
 void ReadFlagFile(const std::string& path, int depth);
 
-// `where` is the prefix of error messages, `depth` the number of files that
-// have led to these words.
+// `where` is the prefix of error messages, `depth` the nesting of flag files.
 void ReadWords(const std::vector<std::string>& words, const std::string& where,
                int depth) {
   for (auto word = words.begin(); word != words.end(); ++word) {

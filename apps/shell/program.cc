@@ -204,8 +204,7 @@ void RequireFlag(const std::string& name, const std::string& value) {
 }
 
 int AvailableCores() {
-  // Unlike the number of cores of the machine, this respects the limit of a
-  // scheduler such as Slurm.
+  // Unlike the number of all cores, this respects the limit of a scheduler.
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof(cores), &cores) == 0) {
     return std::max(1, CPU_COUNT(&cores));

@@ -38,14 +38,12 @@ class LiveView {
   // Whether the stop button was pressed.
   bool is_stopped() const { return state_.is_stopped(); }
 
-  // Call after a frame was tracked. Shows the frame and waits if the speed or
-  // a button requests it, until `is_interrupted`. Returns why the run is to
-  // end, or an empty string.
+  // Shows a frame that was tracked and waits if the speed or a button requests
+  // it, until `is_interrupted`. Returns why the run is to end, or empty.
   std::string Add(const Frame& frame,
                   const std::function<bool()>& is_interrupted);
 
-  // Call after the last frame. `results` is the location of the results, or
-  // empty. Ends the page.
+  // Ends the page after the last frame. `results`: their location, or empty.
   void Finish(const std::string& results);
 
  private:

@@ -115,13 +115,11 @@ class ViewState {
 // signed, low byte first) and its grey level.
 constexpr size_t kViewPointBytes = 7;
 
-// Samples visible points of a frame in random order, so the first n points
-// cover the whole view.
+// Samples visible points in random order: the first n cover the whole view.
 std::string SamplePoints(const Frame& frame, const Camera& camera);
 
-// The matches of a frame with a known velocity, see ViewImages::moves: where
-// its rows were exposed, not where they would be at the time stamp. `weights`:
-// of MotionEstimate.
+// ViewImages::moves of a frame with a known velocity: where its rows were
+// exposed, not as at the time stamp. `weights`: of MotionEstimate.
 std::vector<cv::Vec<float, 5>> MatchesInImage(
     const Frame& frame, const Camera& camera, const Correspondences& matches,
     const std::vector<double>& weights);

@@ -65,8 +65,7 @@ struct FrameView {
   // Moving objects in levels[0], ignored by direct costs; null: none known.
   const CellMask* moving = nullptr;
 
-  // Depth (m) at a pixel of levels[0]; 0 if missing, which sensors mark by 0 or
-  // by the largest value.
+  // Depth (m) at a pixel of levels[0]; 0 if missing: raw 0 or the maximum.
   double DepthAt(int column, int row) const {
     const uint16_t raw = depth.At(column, row);
     return raw == UINT16_MAX ? 0.0 : raw / depth_scale;

@@ -109,8 +109,7 @@ class Minimiser {
     if (!terms_.AsksFor(AssociationPolicy::kEveryStep)) {
       return SolveOnce(max_iterations);
     }
-    // Step by step: within a step the solver must not compare the costs of
-    // different residuals.
+    // Step by step: costs of different residuals must not be compared.
     converged_ = false;
     // Each coarser level has larger pixels and needs only half the precision.
     const double settled = options_.step_tolerance * (1 << 2 * level_);

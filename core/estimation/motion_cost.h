@@ -125,8 +125,7 @@ class MotionCost {
   // The index of each block's match, increasing; -1 for a pixel or a prior.
   virtual const std::vector<int>& matches() const = 0;
 
-  // degrees_of_freedom() of each block, or fewer if measurements are missing,
-  // whose rows are zero.
+  // degrees_of_freedom() of each block, less missing measurements (zero rows).
   virtual const std::vector<int>& degrees() const = 0;
 
   // Whitened residuals, num_residuals() for each block.

@@ -18,8 +18,7 @@ constexpr double kLeastSpread = 1e-18;  // m^2 per pair: a spread of 1 nm
 // A scale is reported if it leaves at most this share of the error.
 constexpr double kExplained = 0.5;
 
-// A larger share of the true spread means other motions, a smaller spread (m)
-// only noise.
+// A larger share left means other motions, a smaller true spread (m) noise.
 constexpr double kMaxRest = 0.7;
 constexpr double kMinSpread = 0.05;
 

@@ -13,10 +13,9 @@ namespace rgbd_pose {
 using IndexPair = std::pair<int, int>;
 
 // Pairs two lists of strictly increasing, finite timestamps (s) by nearest
-// time, at most `max_difference` (s) apart: the pair with the smallest
-// difference first, then the smallest among the remaining entries, each entry
-// used once (as in associate.py of the TUM RGB-D benchmark); the earlier pair
-// of two equal ones. The result is in the order of the first list. O(n log n).
+// time, at most `max_difference` (s) apart, each entry once: the nearest pair
+// first, the earlier of two equal ones (as in associate.py of the TUM RGB-D
+// benchmark). The result is in the order of the first list. O(n log n).
 std::vector<IndexPair> Associate(const std::vector<double>& first,
                                  const std::vector<double>& second,
                                  double max_difference);

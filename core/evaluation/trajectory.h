@@ -23,9 +23,8 @@ using Trajectory = std::vector<StampedPose>;
 std::optional<Rigid3d> InterpolatedPose(const Trajectory& trajectory,
                                         double time, double max_gap = 0.05);
 
-// The motion cur_from_prev between two times (s) along a trajectory of any rate
-// from another source (wheels, an inertial sensor). Nothing in its gaps and
-// beyond its ends.
+// The motion cur_from_prev between two times (s) along a trajectory of another
+// source (wheels, an inertial sensor). Nothing in its gaps and beyond its ends.
 std::optional<Rigid3d> MotionAlong(const Trajectory& trajectory,
                                    double prev_time, double cur_time);
 

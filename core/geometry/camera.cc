@@ -68,10 +68,9 @@ Vector2d InvertEquidistant(const Lens<double>& lens,
 }
 
 // TUM RGB-D benchmark, "intrinsic camera calibration" table; its depth factors
-// are already applied in the released images. Both sensors are read row by row
-// in about 28 ms (Kerl et al., ICCV 2015). How much earlier depth is exposed
-// than colour (s) depends on the driver of the recording: 15 to 20 ms for
-// freiburg1, 0 to 5 ms for freiburg3, unknown for freiburg2.
+// are already applied in the released images. Rows are read in 28 ms (Kerl et
+// al., ICCV 2015). The lead of depth over colour (s) depends on the driver: 15
+// to 20 ms for freiburg1, 0 to 5 ms for freiburg3, unknown for freiburg2.
 RgbdCamera TumCamera(const Camera& camera, double depth_lead) {
   constexpr Shutter kColor = {-0.0075, 0.028, true};
   constexpr double kDepthReadout = 0.027;

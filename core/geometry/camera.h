@@ -136,8 +136,7 @@ struct DepthCorrection {
   Rigid3d depth_from_color = {};
 };
 
-// A camera with the unit, errors and noise of its depth images and its exposure
-// times.
+// A camera with its exposure times and the unit, errors and noise of its depth.
 struct RgbdCamera {
   Camera camera;                // of the colour image
   double depth_scale = 5000.0;  // raw units of the depth image per metre
@@ -147,9 +146,8 @@ struct RgbdCamera {
   std::optional<DepthNoiseModel> depth_noise = {};  // nothing if unknown
 };
 
-// A camera by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Values from the
-// calibration page of the TUM RGB-D benchmark, depth noise kinect. Empty if the
-// name is unknown.
+// A camera by name: tum_fr1, tum_fr2, tum_fr3 (TUM RGB-D benchmark, calibration
+// page; depth noise kinect), ros_default. Empty if the name is unknown.
 std::optional<RgbdCamera> CameraPreset(std::string_view name);
 
 // The names that CameraPreset knows.

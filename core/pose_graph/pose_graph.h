@@ -117,11 +117,10 @@ class PoseGraph {
   std::vector<MotionMatrix> MarginalCovariances(
       const std::vector<int>& poses) const;
 
-  // The factor by which information is counted too often: the number of edges
-  // divided by the number of motions between the poses (1 for a tree). Edges
-  // between frames that see the same features share their noise: if all pairs
-  // of k frames are matched, the k (k - 1) / 2 edges contain no more
-  // information than k - 1 edges. An upper bound: 1 for independent edges.
+  // How often information is counted, at most: the number of edges divided by
+  // that of motions between the poses (1 for a tree). Edges between frames that
+  // see the same features share noise: all k (k - 1) / 2 edges between k frames
+  // contain no more information than k - 1. Independent edges count only once.
   double OvercountingFactor() const;
 
  private:
