@@ -48,10 +48,9 @@ class BatchFolder {
   std::string output_;
 };
 
-// Locks an output folder for this process. A whole batch excludes all others;
-// several shards may run together, but each only once. Child processes inherit
-// the lock, so a run that briefly outlives a killed batch never writes at the
-// same time as the next batch.
+// Locks an output folder. A whole batch excludes all others; several shards may
+// run together, each once. Child processes inherit the lock, so a run that
+// outlives a killed batch never writes at the same time as the next batch.
 class BatchLock {
  public:
   // Throws InputError if another process uses the folder.

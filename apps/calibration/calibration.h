@@ -30,8 +30,7 @@ struct CalibrationSettings {
   // Minimum gain of another camera on held-out pairs, as a share of their cost.
   double min_gain = 0.01;
 
-  // The maximum difference between the halves of a recording, each calibrated
-  // separately, in standard deviations.
+  // The maximum difference of the halves' calibrations, standard deviations.
   double max_halves_sigmas = 4.0;
 
   // The maximum number of frames per second; 0: all. Ignored if a part of the
@@ -63,10 +62,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known = nullptr);
 
-// Returns which parameters are free: all except those that `fix` names (see
-// CalibrationSettings). depth_factor is free only if the scale is known, and
-// only the distortion coefficients of this lens model are free. Throws
-// InputError for an unknown name.
+// Which parameters are free: all but those that `fix` names (see
+// CalibrationSettings), depth_factor only if the scale is known, distortion
+// coefficients only of this lens. Throws InputError for an unknown name.
 FreeParts FreeParameters(const std::string& fix, bool has_scale,
                          LensModel lens);
 
@@ -78,8 +76,7 @@ RgbdCamera ApplyCalibration(const RgbdCamera& first,
 CalibrationVector ThetaBetween(const RgbdCamera& first,
                                const RgbdCamera& changed);
 
-// Returns the parameters of a camera as its file has them; the depth factor
-// relative to the first camera.
+// A camera's parameters as in its file; the depth factor relative to `first`.
 CalibrationVector CameraValues(const RgbdCamera& first,
                                const RgbdCamera& changed);
 

@@ -29,8 +29,7 @@ class LandmarkMatcher {
                   const FrontendOptions& options)
       : map_(map), chosen_(chosen), frontend_(MakeFrontend("patch", options)) {}
 
-  // The landmarks of a keyframe that have views. Each neighbour is a keyframe,
-  // and whether its views are held out.
+  // Landmarks with views in its neighbours (keyframe, whether it is held out).
   std::vector<SeenLandmark> Match(
       int anchor, const std::vector<std::pair<int, bool>>& neighbours) {
     const PreparedFrame frame = Images(anchor);

@@ -37,8 +37,7 @@ struct HeldOutResidual {
   Eigen::Vector2d flow;    // motion in the image, px/s
 };
 
-// The estimates of one parameter from the first and from the second half of a
-// recording, each calibrated separately.
+// One parameter from both halves of a recording, each calibrated separately.
 struct HalvesOfParameter {
   int part = 0;         // index, see CalibrationIndex
   double first = 0.0;   // estimate from the first half
@@ -76,8 +75,7 @@ struct CalibrationResult {
   // first camera corrects it.
   std::array<CalibratedParameter, kCalibrationSize> parameters;
 
-  // Whether the calibration is accepted. If not, `camera` is the first camera,
-  // and `reason` explains why in words.
+  // Whether it is accepted. If not, `camera` is the first one: see `reason`.
   bool is_accepted = false;
   std::string reason;
   RgbdCamera camera;
@@ -123,8 +121,7 @@ struct CalibrationResult {
   // The halves' estimates of the determined parameters; may be empty.
   std::vector<HalvesOfParameter> halves;
 
-  // Factor by which error bars are widened, because the halves differ by more
-  // than the residuals explain.
+  // Factor on error bars, if the halves differ by more than residuals explain.
   double halves_spread = 1.0;
 
   // How far depth, or the first row of colour, turned out to be displaced, px

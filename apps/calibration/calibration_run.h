@@ -17,8 +17,7 @@ namespace rgbd_pose {
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 
-// The path of all tracked frames as the odometry estimates it, without the
-// jumps of map corrections.
+// The path of all tracked frames by odometry, without the jumps of the map.
 Trajectory SmoothPath(const std::vector<SlamFrame>& frames);
 
 // The calibration of a recording, and the path of the frames.

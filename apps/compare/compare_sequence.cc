@@ -30,8 +30,7 @@ LossFigures EndPoseOf(const Trajectory& trajectory) {
   return figures;
 }
 
-// ATE (mm), RPE over 1 s (mm, deg), the error of the last pose (mm, deg) and
-// the share of tracked frames.
+// ATE (mm), RPE over 1 s and error of the end (mm, deg each), tracked share.
 LossFigures ErrorsOf(const LossRun& run) {
   LossFigures figures(5);
   if (run.evaluation.has_value()) {

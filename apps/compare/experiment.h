@@ -44,9 +44,8 @@ ExperimentResult RunExperiment(const ExperimentSettings& settings,
 std::vector<std::string> ChosenLosses(const ExperimentSettings& settings,
                                       const std::vector<std::string>& own);
 
-// The ways to compare M-estimators: one file and one row of experiment.cc each.
-// They write all files except the report. For invalid settings, they throw
-// InputError before writing anything.
+// The ways to compare M-estimators, one row of experiment.cc each. They write
+// all but the report, and throw InputError for invalid settings before that.
 ExperimentResult RunSimulated(const ExperimentSettings& settings,
                               const std::string& output);
 ExperimentResult RunRecorded(const ExperimentSettings& settings,

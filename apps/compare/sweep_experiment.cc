@@ -47,8 +47,7 @@ std::vector<MotionError> RunSeed(int seed, double outlier_share,
   return errors;
 }
 
-// The errors of every loss, schedule, start and share, in this order. All
-// methods use the same matches.
+// The errors of all methods at all shares, each on the same matches.
 std::vector<SweepCell> RunSweep(EstimatorSettings settings,
                                 const std::vector<std::string>& losses,
                                 int seeds) {

@@ -54,16 +54,14 @@ struct ExportOptions {
   int threads = 1;          // that read images in advance
 };
 
-// COLMAP and nerfstudio place the centre of the upper left pixel at (0.5, 0.5);
-// this project places it at (0, 0).
+// The upper left pixel's centre for COLMAP and nerfstudio; here it is at 0.
 constexpr double kPixelCentre = 0.5;
 
 // An export format for other tools, a row of the table in export_format.cc.
 struct ExportFormat {
   const char* name;            // name for users
   const char* default_output;  // file or folder, in that of the run
-  // Writes the export completely or not at all. Returns the text that the
-  // program prints. Throws InputError.
+  // Writes all or nothing and returns the text to print. Throws InputError.
   std::string (*write)(const FinishedRun& run, const ExportOptions& options);
 };
 
@@ -84,8 +82,7 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
 
 const std::vector<ExportFormat>& ExportFormats();
 
-// Opens the recording of a run to read its frames again, with colour. Throws
-// InputError if it is missing or broken.
+// Opens a run's recording, with colour. Throws InputError if missing or broken.
 std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run);
 
 // Called for a frame of a run; `view` is the index of its pose.

@@ -51,8 +51,7 @@ struct RunResults {
   Trajectory trajectory;             // of the frames that were not lost
   ResidualHistogram residuals;       // of the matches
 
-  // Empty without ground truth or if no pose can be compared: then
-  // no_evaluation has the reason.
+  // Empty without ground truth, or for the reason in no_evaluation.
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
@@ -105,8 +104,7 @@ class SequenceRun {
 
   const RunInputs& inputs() const { return inputs_; }
 
-  // Call once, after the last frame. Compares the path with the ground truth
-  // (world from camera) unless it is null.
+  // Call once, at the end. Compares the path with the truth unless it is null.
   RunResults Finish(const Trajectory* ground_truth);
 
  private:

@@ -64,8 +64,7 @@ NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
           }};
 }
 
-// "last" (the last pose), "velocity" (constant motion), or one of
-// core/initial_guess/initial_guess.h.
+// The last pose, constant motion, or a row of InitialGuesses().
 std::vector<std::string> GuessNames() {
   std::vector<std::string> names = {"last", "velocity"};
   for (const InitialGuess& row : InitialGuesses()) names.emplace_back(row.name);

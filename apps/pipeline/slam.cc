@@ -89,8 +89,7 @@ void Slam::Follow(const TrackedFrame& tracked) {
     const int reference = MapId(tracked.reference);
     const Rigid3d& cur_from_ref = tracked.cur_from_reference;
     if (reference != reference_) {
-      // For a change to an earlier reference, use the measured motion from the
-      // previous reference, if known.
+      // To an earlier reference by the motion from the previous one, if known.
       const auto left = std::find_if(tracked.edges.begin(), tracked.edges.end(),
                                      [&](const RelativePose& edge) {
                                        return MapId(edge.ref) == reference_ &&

@@ -20,8 +20,7 @@ struct SlamSettings {
   MappingOptions mapping;  // which keyframes are connected
 
   // Results of the mapping thread are applied this number of frames after their
-  // keyframe, and waited for if they are late. Results therefore do not depend
-  // on the speed of the machine.
+  // keyframe, however late, so they do not depend on the machine's speed.
   int update_delay = 10;
 };
 
@@ -160,8 +159,7 @@ class Slam {
 
   std::string error_;  // of the last update
   std::vector<PathFrame> path_;
-  // Keyframes that no update includes yet, oldest first, each relative to the
-  // keyframe that it was tracked against.
+  // Keyframes that no update includes yet, oldest first, and their references.
   struct Pending {
     int id = 0;
     std::optional<int> ref;

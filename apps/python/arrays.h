@@ -22,8 +22,7 @@ class NumberArray {
  public:
   static constexpr pybind11::ssize_t kAny = -1;
 
-  // Throws InputError with the name of the argument if the object is not an
-  // array of real numbers of this shape.
+  // Throws InputError with `name` unless it has real numbers of this shape.
   NumberArray(const pybind11::object& object, const std::string& name,
               const std::vector<pybind11::ssize_t>& shape);
 
@@ -52,8 +51,7 @@ class NumberArray {
   bool is_float32_ = false;
 };
 
-// Converts an object to an array. Throws InputError with the name of the
-// argument if the object is invalid.
+// Converts an object to an array. Throws InputError with `name` if it is none.
 pybind11::array ToArray(const pybind11::object& object,
                         const std::string& name);
 

@@ -26,8 +26,7 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// An estimate whose lists have one entry for each input row, whether the row
-// was accepted as a match or not.
+// An estimate whose lists have an entry for each input row, a match or not.
 struct EstimateResult : MotionEstimate {
   std::vector<uint8_t> inliers;  // is_inlier; an array needs bytes
   size_t num_rejected = 0;

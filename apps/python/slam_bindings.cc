@@ -65,8 +65,7 @@ class SharedSlam : public SharedRun {
       : SharedRun(camera,
                   SequenceRun(settings.odometry, settings.slam, camera)) {}
 
-  // Throws InputError if called after the first frame, for a folder without a
-  // map and for a map of another camera.
+  // Throws InputError after the first frame, and for no map of this camera.
   void Load(const std::string& folder, bool localise_only) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!run_.frames().empty() || is_finished_) {

@@ -4,7 +4,6 @@
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/figures/svg_chart.h"
 #include "apps/report/report_page.h"
-#include "apps/report/residual_pictures.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
 

@@ -1,10 +1,10 @@
-#include "apps/report/residual_pictures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "apps/calibration/calibration_result.h"
 #include "apps/figures/svg_chart.h"
+#include "apps/report/report_page.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
 

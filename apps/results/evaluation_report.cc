@@ -101,22 +101,21 @@ json RpeToJson(const RelativePoseError& error, double delta) {
       {"rotation_deg", StatisticsToJson(error.rotation, kDegreesPerRadian)}};
 }
 
-std::string FormatLine(const char* what, const Consistency& c) {
-  return Format("  %-30s%12d%12d%12.2f%12.2f\n", what, c.count, c.wrong, c.nees,
-                c.median);
-}
-
 std::string FormatConsistency(const RunConsistency& consistency) {
   const TruthNoise& noise = consistency.truth_noise;
+  const auto line = [](const std::string& what, const Consistency& c) {
+    return Format("  %-30s%12d%12d%12.2f%12.2f\n", what.c_str(), c.count,
+                  c.wrong, c.nees, c.median);
+  };
   return Format(
              "\nErrors and covariances (ground truth: sigma %g mm, %g deg)\n",
              noise.translation * kMillimetresPerMetre,
              noise.rotation * kDegreesPerRadian) +
          Format("%-32s%12s%12s%12s%12s\n", "", "evaluated", "wrong", "NEES",
                 "median") +
-         FormatLine(Format("frames, of %d ok", consistency.ok).c_str(),
-                    consistency.ok_frames) +
-         FormatLine("all motions", consistency.edges);
+         line(Format("frames, of %d ok", consistency.ok),
+              consistency.ok_frames) +
+         line("all motions", consistency.edges);
 }
 
 json ToJson(const Consistency& c) {

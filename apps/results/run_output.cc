@@ -60,12 +60,6 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
   }
 }
 
-double PeakMemoryMb() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss * 1024 / 1e6;  // ru_maxrss is in KiB
-}
-
 }  // namespace
 
 std::vector<Setting> SettingTable(RunOutputSettings* settings) {
@@ -136,6 +130,8 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                       {"median", Median(depth_stamps_ms_)},
                       {"most", Quantile(depth_stamps_ms_, 1.0)}};
   }
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);  // ru_maxrss is in KiB
   const ResidualHistogram& residuals = results.residuals;
   nlohmann::json metrics = {{"program", info.name},
                             {"dataset", dataset},
@@ -143,7 +139,7 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                             {"dropped_frames", source_.dropped()},
                             {"damaged_frames", results.damaged.size()},
                             {"remarks", source_.remarks()},
-                            {"peak_rss_mb", PeakMemoryMb()},
+                            {"peak_rss_mb", usage.ru_maxrss * 1024 / 1e6},
                             {"run", summary},
                             {"jumps", jumps},
                             {"shutter", ShutterToJson(source_.camera())},

@@ -26,8 +26,7 @@ struct RunOutputSettings {
 
 std::vector<Setting> SettingTable(RunOutputSettings* settings);
 
-// The output files of a run. Images and the cloud are made while frames arrive;
-// the files are written at the end.
+// The output files of a run; images and the cloud are made as frames arrive.
 class RunOutput {
  public:
   // Creates the output folder before the run. Throws InputError if this fails

@@ -19,8 +19,7 @@ constexpr size_t kMostJumps = 20;  // reported
 // Motions over unequal intervals cannot be compared.
 constexpr double kMaxIntervalRatio = 1.6;
 
-// The difference between the motion to frame i and the mean of its neighbours;
-// negative if it cannot be computed.
+// How far the motion to frame i is from its neighbours' mean; -1 if unknown.
 double Deviation(const std::vector<TrackedFrame>& frames, size_t i) {
   for (size_t k = i - 2; k <= i + 1; ++k) {
     if (frames[k].status == TrackingStatus::kLost ||

@@ -27,9 +27,8 @@ struct RunSettings {
 };
 
 // Tracks the frames of a source, with a progress bar and warnings. Returns why
-// the run ended before the last frame (a signal, the stop button of the page, a
-// source that fails, too many damaged frames), or an empty string. Throws
-// InputError if no frame was read.
+// it ended early (a signal, the page's stop button, a failing source, too many
+// damaged frames), or empty. Throws InputError if no frame was read.
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                         RunOutput* output, LiveView* view);
 

@@ -18,8 +18,7 @@ class CsvTable {
   // The cells of a column. Throws InputError if there is no such column.
   std::vector<std::string> Words(const std::string& column) const;
 
-  // The same as numbers; NaN for an empty cell. Throws InputError for any other
-  // cell that is not a finite number.
+  // The same as finite numbers; NaN if empty. Throws InputError for others.
   std::vector<double> Numbers(const std::string& column) const;
 
  private:

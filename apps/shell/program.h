@@ -82,8 +82,7 @@ inline constexpr int kMaxThreads = 256;
 // The number of processor cores that this process may use, at least 1.
 int AvailableCores();
 
-// Resolves the --threads flag of a program: 0 means one thread per core. Throws
-// InputError for an invalid number.
+// The number of threads for --threads; 0: one per core. Throws InputError.
 int NumThreads(int flag);
 
 }  // namespace rgbd_pose

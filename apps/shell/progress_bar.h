@@ -5,8 +5,7 @@
 
 namespace rgbd_pose {
 
-// A progress bar with the remaining time, drawn on stderr only if it is a
-// terminal. It is erased on destruction.
+// A progress bar on stderr, if this is a terminal; erased on destruction.
 class ProgressBar {
  public:
   ProgressBar(std::string label, int total);

@@ -32,8 +32,7 @@ constexpr milliseconds kInterval(80);
 // Interval of events without news. They detect pages that have been closed.
 constexpr milliseconds kHeartbeat(500);
 
-// A browser that does not read is disconnected after this time, s. Only the
-// thread of this page waits.
+// s; only the page's own thread waits for a browser that does not read.
 constexpr int kWriteTimeout = 2;
 
 // Maximum time for sending the last news to the pages.
@@ -132,8 +131,7 @@ class ViewServer::Impl {
     button("/stop", [this] { state_->Stop(); });
   }
 
-  // Rejects requests that another site makes through the user's browser, with a
-  // host name of its own or from its page.
+  // Rejects other sites' requests: by a host name of theirs or from their page.
   bool IsOurs(const Request& request) const {
     const std::string port = ":" + std::to_string(port_);
     const std::string host = request.get_header_value("Host");

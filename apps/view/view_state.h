@@ -19,8 +19,7 @@
 
 namespace rgbd_pose {
 
-// A frame on the page (without edges), and its pose relative to its keyframe,
-// which loop closures move.
+// A frame without edges; its pose in its keyframe, which loop closures move.
 struct ViewFrame : TrackedFrame {
   std::optional<int> keyframe;  // id; empty: the frame was lost
   Rigid3d keyframe_from_cam;
@@ -81,8 +80,7 @@ class ViewState {
   // The last call: sets the location of the results.
   void Finish(const std::string& results);
 
-  // Returns the news since the cursor and waits for news up to `patience`. Long
-  // histories are returned in parts.
+  // Waits up to `patience` for news since the cursor; long ones come in parts.
   ViewNews Next(std::chrono::milliseconds patience, ViewCursor* cursor);
 
   // The number of open pages.

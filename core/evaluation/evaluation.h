@@ -63,8 +63,7 @@ struct EvaluationReport {
   // The alignment with scale, which can reveal errors of the input.
   Sim3Alignment sim3;
 
-  // Relative pose errors at fixed intervals from i to j. Every paired pose i
-  // that has a counterpart j is a start:
+  // Relative pose errors from every paired pose i that has a counterpart j:
   RelativePoseError rpe_frame;    // j is the next paired pose
   RelativePoseError rpe_seconds;  // j is nearest to rpe_delta_seconds later
   RelativePoseError rpe_metres;   // j: first pose at least rpe_delta_metres on

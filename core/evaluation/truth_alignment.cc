@@ -14,8 +14,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Compares an estimate with the interpolated truth under any fixing. Both
-// trajectories must outlive it.
+// Compares trajectories, which must outlive it, under any fixing of the truth.
 class TruthComparison {
  public:
   // Of the compared motions: they outweigh noise, but drift does not count.
@@ -98,8 +97,7 @@ constexpr double kConverged = 1e-4;  // of FixingUnits
 // A parameter counts as open if more than this share of it is undetermined.
 constexpr double kMaxOpenShare = 0.1;
 
-// The standard deviations along `directions`, in FixingUnits; infinite for
-// parameters with a share in `rest`.
+// Sigmas along `directions`, in FixingUnits; infinite with a share in `rest`.
 FixingVector SigmaOf(const FixingEquations& equations,
                      const FixingDirections& directions,
                      const FixingDirections& rest) {

@@ -82,9 +82,8 @@ struct Camera {
   // Derivative of Project (px) with respect to `place` on the plane z = 1.
   Eigen::Matrix2d ProjectDerivative(const Eigen::Vector2d& place) const;
 
-  // Ideal pixel (same fx, fy, cx, cy, no distortion) of an image pixel, to
-  // 1e-10 px. NaN if there is none: beyond 90 degrees, or where the lens
-  // polynomial is not invertible.
+  // Ideal pixel (no distortion) of an image pixel, to 1e-10 px. NaN if there is
+  // none: beyond 90 degrees, or where the lens polynomial is not invertible.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
 
   // The ray (a, b, 1) of an ideal pixel; times the depth, it is the point.

@@ -17,8 +17,7 @@ struct Twist {
     return Rigid3d::FromRotationVector(-seconds * angular, -seconds * linear);
   }
 
-  // Position of a static point (camera axes, m) in the axes of the camera after
-  // `seconds`, to second order.
+  // A static point (camera axes, m) as seen after `seconds`, to second order.
   template <typename T>
   void MovePoint(const T* point, const T& seconds, T* moved) const {
     const Eigen::Vector3d& w = angular;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <vector>
 
 #include "core/pose_graph/graph_problem.h"
 #include "core/util/input_error.h"

@@ -72,8 +72,7 @@ std::string TemporaryPath(const std::string& path);
 // Flushes names in a folder to disk. Throws InputError on failure.
 void SyncFolder(const std::string& path);
 
-// Throws InputError if WriteFileAtomically could not write the file: to report
-// this before a long computation.
+// Throws InputError if the file cannot be written, before a long computation.
 void RequireWritable(const std::string& path);
 
 }  // namespace rgbd_pose
