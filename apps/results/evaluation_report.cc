@@ -125,16 +125,6 @@ json ToJson(const Consistency& c) {
           {"nees_median", c.count > 0 ? json(c.median) : json()}};
 }
 
-json ConsistencyToJson(const RunConsistency& consistency) {
-  const TruthNoise& noise = consistency.truth_noise;
-  return {{"wrong_above_chi_square", kWrongChiSquare},
-          {"truth_sigma_m", noise.translation},
-          {"truth_sigma_deg", noise.rotation * kDegreesPerRadian},
-          {"ok", consistency.ok},
-          {"ok_frames", ToJson(consistency.ok_frames)},
-          {"edges", ToJson(consistency.edges)}};
-}
-
 // Formats values such as "1.40 +- 0.05", or "n/a" if undetermined.
 std::string FormatEstimates(const char* quantity, const Eigen::VectorXd& values,
                             const Eigen::VectorXd& sigmas, double factor,
@@ -275,7 +265,14 @@ json EvaluationToJson(const EvaluationReport& report) {
           StatisticsToJson(error.rotation, kDegreesPerRadian)}});
   }
   if (report.consistency.has_value()) {
-    result["consistency"] = ConsistencyToJson(*report.consistency);
+    const TruthNoise& noise = report.consistency->truth_noise;
+    result["consistency"] = {
+        {"wrong_above_chi_square", kWrongChiSquare},
+        {"truth_sigma_m", noise.translation},
+        {"truth_sigma_deg", noise.rotation * kDegreesPerRadian},
+        {"ok", report.consistency->ok},
+        {"ok_frames", ToJson(report.consistency->ok_frames)},
+        {"edges", ToJson(report.consistency->edges)}};
   }
   if (report.final_pose) {
     result["final_pose"] = {
