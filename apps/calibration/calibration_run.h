@@ -17,7 +17,7 @@ namespace rgbd_pose {
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 
-// The path of all tracked frames by odometry, without the jumps of the map.
+// The path of all tracked frames by odometry, without jumps of map corrections.
 Trajectory SmoothPath(const std::vector<SlamFrame>& frames);
 
 // The calibration of a recording, and the path of the frames.
@@ -32,9 +32,9 @@ struct RecordingCalibration {
 
 // Maps a recording and calibrates its camera from the map; again with the
 // camera found if depth was displaced by more than a pixel. `on_frame`, if not
-// empty, is called for each tracked frame with the pass, the number of
-// frames done in it and of all frames (0: not known in advance). Throws
-// InputError as OpenSequence does, and for invalid settings.
+// empty, is called for each tracked frame with the pass, the number of frames
+// done in it and of all frames (0: not known in advance). Throws InputError as
+// OpenSequence does, and for invalid settings.
 RecordingCalibration CalibrateRecording(
     const SequenceSettings& sequence, const OdometrySettings& odometry,
     const SlamSettings& slam, const CalibrationSettings& settings, int threads,

@@ -39,7 +39,7 @@ std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
                 options.output.c_str());
 }
 
-// One line per pose, the upper rows of world_from_cam; times are another file.
+// One line per pose, the upper rows of world_from_cam; times have a file.
 std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
   OutputFolder folder(options.output, {"poses.txt", "times.txt"},
                       options.overwrite);

@@ -86,7 +86,7 @@ class SequenceRun {
     return slam_ == nullptr ? *odometry_ : slam_->odometry();
   }
 
-  // The map, complete after Finish; other maps are loaded first. May be null.
+  // Complete after Finish; null without a Slam. Load maps before any frame.
   Slam* slam() const { return slam_.get(); }
 
   // The SLAM results of each frame, without edges (these are in RunResults).

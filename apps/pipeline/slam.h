@@ -20,7 +20,7 @@ struct SlamSettings {
   MappingOptions mapping;  // which keyframes are connected
 
   // Results of the mapping thread are applied this number of frames after their
-  // keyframe, however late, so they do not depend on the machine's speed.
+  // keyframe, waited for if late: they do not depend on the machine's speed.
   int update_delay = 10;
 };
 

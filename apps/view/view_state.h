@@ -19,7 +19,7 @@
 
 namespace rgbd_pose {
 
-// A frame without edges; its pose in its keyframe, which loop closures move.
+// A frame without edges; its pose in a keyframe, which loop closures move.
 struct ViewFrame : TrackedFrame {
   std::optional<int> keyframe;  // id; empty: the frame was lost
   Rigid3d keyframe_from_cam;
