@@ -12,10 +12,7 @@
 namespace rgbd_pose {
 
 std::string DirectOptions::Check() const {
-  if (max_points < 0 || max_coarse_points < 1) {
-    return "max_points must not be negative, max_coarse_points must be "
-           "positive";
-  }
+  if (max_points < 0) return "max_points must not be negative";
   if (!(min_gradient >= 0.0)) return "min_gradient must not be negative";
   if (!(min_depth > 0.0 && min_depth < max_depth)) {
     return "depth limits must satisfy 0 < min_depth < max_depth";

@@ -21,8 +21,7 @@ std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
 // The defaults.
 inline constexpr char kDefaultDirectCost[] = "photometric+projective_plane";
 inline constexpr char kDefaultDirectLoss[] = "tukey";
-// Loss for the way from the guess to where the default loss can judge: its
-// basin is wide.
+// Loss, with a wide basin, from the guess to where the default can judge.
 inline constexpr char kLeadingLoss[] = "huber";
 
 // Like MakeRobustCosts, for direct costs and motion_prior.

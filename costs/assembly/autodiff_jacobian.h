@@ -11,8 +11,7 @@ template <typename Type>
 using JacobianOf = decltype(&Type::template Jacobian<double>);
 
 // Adds an automatic Jacobian to a residual type without one. It works match by
-// match: several times slower than a hand-written one, but correct from the
-// start.
+// match: several times slower than a hand-written one, but correct.
 template <typename Type>
 struct WithAutodiffJacobian : Type {
   template <typename D>

@@ -23,8 +23,7 @@
 
 namespace rgbd_pose {
 
-// A Jacobian as Ceres stores it. Eigen requires a single column to be
-// column-major.
+// A Jacobian as Ceres stores it. In Eigen a single column is column-major.
 template <int Rows, int K>
 using RowMajor =
     Eigen::Matrix<double, Rows, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
@@ -41,9 +40,8 @@ struct CompressedSums {
 
 namespace compressed {
 
-// The Hessian's type for factorisation. For K > 6, fixed-size Eigen would
-// unroll loops for half a minute of compile time. Neither type allocates
-// memory.
+// The Hessian's type for factorisation; never allocates memory. For K > 6,
+// fixed-size Eigen would unroll loops for half a minute of compile time.
 template <int K>
 using Factorable = Eigen::Matrix<double, K <= 6 ? K : Eigen::Dynamic,
                                  K <= 6 ? K : Eigen::Dynamic, 0, K, K>;

@@ -20,8 +20,7 @@ struct CalibrationPrior {
 // several would add up in varying order, and the last digits would vary.
 class BundleAdjustment {
  public:
-  // `views` must outlive this object. With `training_only`, views that are held
-  // out are not used.
+  // `views` must outlive this object. `training_only`: without held-out views.
   BundleAdjustment(const CalibrationViews& views, const CalibrationPrior& prior,
                    bool training_only, int max_iterations = 20)
       : views_(views),
@@ -67,8 +66,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
 
 // The normal equations of a bundle adjustment at a state, without known
 // distances and the prior. The unknowns are all poses but the first, six
-// numbers each, then y of CalibrationOrigin; the depths of landmarks are
-// eliminated.
+// numbers each, then y of CalibrationOrigin; landmarks are eliminated.
 struct ReducedCameraSystem {
   Eigen::MatrixXd hessian;  // only the lower triangle is valid
 
@@ -87,10 +85,10 @@ struct ReducedCameraSystem {
   }
 };
 
-// `poses` must be the poses of `state`. Residuals have Cauchy's loss.
-ReducedCameraSystem MakeReducedCameraSystem(
-    const CalibrationViews& views, bool training_only,
-    const CalibrationOrigin& origin, const CalibrationState& state,
-    const std::vector<MotionDerivatives>& poses);
+// Residuals have Cauchy's loss.
+ReducedCameraSystem MakeReducedCameraSystem(const CalibrationViews& views,
+                                            bool training_only,
+                                            const CalibrationOrigin& origin,
+                                            const CalibrationState& state);
 
 }  // namespace rgbd_pose

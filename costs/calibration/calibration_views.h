@@ -83,8 +83,7 @@ inline RowMotion MotionAt(const CalibrationViews& views, int keyframe,
           Shutter{0.0, 1.0}.RowTime(row, views.camera.height)};
 }
 
-// The measurements of a landmark at its anchor, with sigmas scaled by the
-// state.
+// The measurements of a landmark at its anchor; the state scales sigmas.
 inline LandmarkData DataOf(const CalibrationViews& views,
                            const Landmark& landmark,
                            const CalibrationState& state) {

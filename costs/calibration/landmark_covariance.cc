@@ -121,10 +121,11 @@ class OneLandmark {
 
 }  // namespace
 
-ReducedCameraSystem MakeReducedCameraSystem(
-    const CalibrationViews& views, bool training_only,
-    const CalibrationOrigin& origin, const CalibrationState& state,
-    const std::vector<MotionDerivatives>& poses) {
+ReducedCameraSystem MakeReducedCameraSystem(const CalibrationViews& views,
+                                            bool training_only,
+                                            const CalibrationOrigin& origin,
+                                            const CalibrationState& state) {
+  const std::vector<MotionDerivatives> poses = PosesOf(state);
   const int num_poses = static_cast<int>(poses.size());
   const int size = 6 * (num_poses - 1) + kCalibrationSize;
   ReducedCameraSystem equations;
@@ -172,7 +173,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   const std::vector<MotionDerivatives> poses = PosesOf(state);
   const int num_poses = static_cast<int>(poses.size());
   const ReducedCameraSystem equations =
-      MakeReducedCameraSystem(views, training_only, origin, state, poses);
+      MakeReducedCameraSystem(views, training_only, origin, state);
   const int size = static_cast<int>(equations.hessian.rows());
   Eigen::MatrixXd known_before = Eigen::MatrixXd::Zero(size, size);
   const int y_at = equations.PlaceOfY();

@@ -43,8 +43,7 @@ struct RowMotion {
   double row = 0.0;  // as a share of the readout: -1/2 first, 1/2 last
 };
 
-// Time from the colour to the depth exposure of a pixel, beyond what has been
-// corrected already, s.
+// Time from colour to depth exposure of a pixel, not yet corrected, s.
 template <typename T>
 T DepthLag(const T* theta, double row) {
   return theta[kDepthTime] +

@@ -182,12 +182,14 @@ class DirectCostOf final : public PackedCost<Type> {
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;
     DirectOptions selection = options_;
+    // Coarser levels only lead to the finest one.
+    constexpr int kMaxCoarsePoints = 1000;
     int& count = selection.max_points;
     if (count == 0) count = Residual::kMaxPoints;
     for (int level = 0; level < options_.num_levels; ++level) {
       Residual::Points(*pair.prev, ImageLevel(*pair.prev, level), selection,
                        &points_[level]);
-      count = std::min(count, options_.max_coarse_points);
+      count = std::min(count, kMaxCoarsePoints);
     }
   }
 

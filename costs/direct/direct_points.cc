@@ -141,8 +141,8 @@ void TexturedPoints(const FrameView& frame, int level_index,
   points->Pad();
 }
 
-void SmoothPoints(const FrameView& frame, const DirectOptions& options,
-                  PackedColumns* points) {
+void SmoothPoints(const FrameView& frame, int /*level*/,
+                  const DirectOptions& options, PackedColumns* points) {
   // At angles between ray and surface below 15 degrees, points hardly help.
   constexpr double kMinCosine = 0.25;
   const Camera& camera = frame.levels[0].camera;

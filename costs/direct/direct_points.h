@@ -65,8 +65,6 @@ struct DirectOptions {
   // Number of points at the finest level; 0: kMaxPoints of the cost. The image
   // is divided into about as many square cells; each gives at most one point.
   int max_points = 0;
-  // The same at the coarser levels, which only lead to the finest one.
-  int max_coarse_points = 1000;
 
   // Which pixels are used: limits in gray levels per pixel and in m.
   double min_gradient = 3.0;
@@ -75,9 +73,8 @@ struct DirectOptions {
 
   // Number of pyramid levels; if the images have fewer, the coarsest repeats.
   int num_levels = 4;
-  // Pyramid level of the image used as the finest one. At 1, half the image
-  // size, interpolation does no harm to gray levels. Depths are always read at
-  // full resolution.
+  // Pyramid level of the image used as the finest one. At 1, half the size,
+  // interpolation does no harm to gray levels. Depths are of level 0.
   int finest_level = 1;
 
   // See MotionCost::information_factor; 0: kInformation of the cost.
@@ -96,8 +93,8 @@ void TexturedPoints(const FrameView& frame, int level,
 // The centre of each cell, textured or not, if the surface around it is flat.
 // Its depth is that of a plane through 5 x 5 measured depths. Columns: X (m),
 // the plane N . X = 1 (1 / m), the sigma of a single measured depth there (m).
-void SmoothPoints(const FrameView& frame, const DirectOptions& options,
-                  PackedColumns* points);
+void SmoothPoints(const FrameView& frame, int /*level*/,
+                  const DirectOptions& options, PackedColumns* points);
 
 // Estimates how gray levels change between the frames, which have separate
 // exposures: sets input->gain and bias by robust regression over the textured

@@ -6,14 +6,12 @@
 namespace rgbd_pose {
 
 // The difference in inverse depth between the surface measured in the current
-// frame and a point of the previous frame, moved into the current one:
+// frame, the plane N . p = 1 (surface.h), and a point of the previous frame:
 //
-//   r = (1 / Z_cur - 1 / q_z) / sigma,   q = R (X_prev - C)
+//   r = (1 / Z_cur - 1 / q_z) / sigma = (N . q - 1) / (sigma q_z)
 //
-// The noise of a structured-light camera is constant in inverse depth. With the
-// plane N of the surface (surface.h), 1 / Z_cur = N . q / q_z:
-//
-//   r = (N . q - 1) / (sigma q_z)
+// with q = R (X_prev - C), the point moved into the current frame. The noise of
+// a structured-light camera is constant in inverse depth.
 struct InverseDepth : Surface {
   static constexpr char kName[] = "inverse_depth";
   static constexpr int kColumns = 7;  // X_prev, N / sigma, 1 / sigma

@@ -9,20 +9,15 @@ namespace rgbd_pose {
 
 // The difference in gray level between a point of the previous frame and the
 // pixel where it is seen in the current image (Kerl, Sturm & Cremers, ICRA
-// 2013; Engel, Koltun & Cremers, PAMI 2018):
+// 2013; Engel, Koltun & Cremers, PAMI 2018; docs/costs.md):
 //
 //   r = (I_cur(u(q)) - gain I_prev - bias) / sigma,   q = R (X_prev - C)
+//     = k_0 + (k_x q_x + k_y q_y) / q_z
 //
-// The image is approximated by a plane around u (see DirectInput). In the
-// normalised image coordinates x = q_x / q_z, y = q_y / q_z:
-//
-//   r = k_0 + k_x x + k_y y
-//
-// With a rolling shutter (FrameView::timing), u is where q is seen when its row
-// is exposed; its derivative neglects that motion (3 % at 1 rad/s).
-//
-// sigma^2 = sigma_gray^2 (1 + gain^2) + (dI / d depth)^2 sigma_depth^2: the
-// noise of both images, and the shift of u due to the depth error.
+// where the image is a plane around u (see DirectInput). sigma is the noise of
+// both images and of u, due to the depth error. With a rolling shutter
+// (FrameView::timing), u is where q is seen when its row is exposed; its
+// derivative neglects that motion (3 % at 1 rad/s).
 struct Photometric : DirectResidual {
   static constexpr char kName[] = "photometric";
   static constexpr int kScaleGroup = 1;  // gray levels

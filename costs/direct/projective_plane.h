@@ -7,13 +7,9 @@ namespace rgbd_pose {
 
 // The distance of a point of the previous frame, moved into the current one,
 // from the plane of the surface measured there (Chen & Medioni 1992; Newcombe
-// et al., ISMAR 2011):
+// et al., ISMAR 2011), which is N . p = 1 with n = N / |N| (surface.h):
 //
-//   r = n . (q - p) / sigma,   q = R (X_prev - C)
-//
-// With the plane N (surface.h), n = N / |N|:
-//
-//   r = (N . q - 1) / (|N| sigma)
+//   r = n . (q - p) / sigma = (N . q - 1) / (|N| sigma),   q = R (X_prev - C)
 //
 // sigma is the part of the depth noise along n: a depth error moves a point
 // along its ray (x, y, 1), of which N . ray / |N| = 1 / (z |N|) lies along n.

@@ -41,10 +41,7 @@ struct Surface : DirectResidual {
   // Noise of neighbouring depths is correlated (docs/direct.md).
   static constexpr double kInformation = 0.75;
 
-  static void Points(const FrameView& frame, int /*level*/,
-                     const DirectOptions& options, PackedColumns* points) {
-    SmoothPoints(frame, options, points);
-  }
+  static constexpr auto* Points = &SmoothPoints;
 
   template <typename D>
   [[gnu::always_inline]] static void Locate(const DirectInput& input,

@@ -42,14 +42,6 @@ struct ForwardError {
     Forward::TransformPoint(motion, columns, q);
     for (int i = 0; i < 3; ++i) e[i] = columns[3 + i] - q[i];
   }
-
-  // de / d x[parameter] = -dq / d x[parameter].
-  template <typename D>
-  static void Derivative(const MotionDerivatives& motion, const D* columns,
-                         int parameter, D* de) {
-    Forward::Derivative(motion, columns, parameter, de);
-    for (int i = 0; i < 3; ++i) de[i] = -de[i];
-  }
 };
 
 // Common part of the costs whose residual is linear in the error: r = W e, with
@@ -80,7 +72,8 @@ struct WeightedForwardError {
     Residual(motion, columns, r);
     for (int parameter = 0; parameter < 6; ++parameter) {
       D de[3], dr[rows];
-      ForwardError::Derivative(motion, columns, parameter, de);
+      Forward::Derivative(motion, columns, parameter, de);
+      for (int i = 0; i < 3; ++i) de[i] = -de[i];
       Type::Weigh(columns + ForwardError::kColumns, de, dr);
       for (int row = 0; row < rows; ++row) J[row][parameter] = dr[row];
     }

@@ -32,8 +32,7 @@ struct Forward {
   }
 };
 
-// One row of a Jacobian, for a residual whose derivatives by the moved point q
-// are `gradient`.
+// One row of a Jacobian. `gradient`: of the residual, by the moved point q.
 template <typename D>
 [[gnu::always_inline]] inline void RowOfPoint(const MotionDerivatives& motion,
                                               const D* point,

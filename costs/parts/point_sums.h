@@ -18,8 +18,7 @@
 
 namespace rgbd_pose {
 
-// Whether Type has the optional member that the alias template Member<Type>
-// names.
+// Whether Type has the optional member that the alias Member<Type> names.
 template <template <typename> typename Member, typename Type, typename = void>
 constexpr bool kHas = false;
 template <template <typename> typename Member, typename Type>

@@ -72,8 +72,7 @@ Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   return fitness;
 }
 
-// The topic that is most suitable as `what`. Sets `had_choice` if others are
-// suitable, too.
+// The topic most suitable as `what`. Sets `had_choice` if others are suitable.
 std::string Best(const BagReader& bag, const std::vector<Fitness>& fitness,
                  int Fitness::*what, const char* name, bool* had_choice) {
   int most = 1;

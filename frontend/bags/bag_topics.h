@@ -23,8 +23,7 @@ struct BagTopics {
 
 // Chooses the topics given by `names` (colour, depth and, unless it is next to
 // colour, CameraInfo) or, if there are none, by types, encodings and names.
-// Throws InputError, which lists the topics, if no topic is suitable or several
-// are equally suitable.
+// Throws InputError, which lists the topics, unless one is the most suitable.
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
 
 // Whether the name of a topic contains `part`.

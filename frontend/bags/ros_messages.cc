@@ -1,6 +1,5 @@
 #include "frontend/bags/ros_messages.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 namespace rgbd_pose {

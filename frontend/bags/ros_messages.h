@@ -62,8 +62,7 @@ RosImage ReadRosImage(WireReader reader);
 RosImage ReadRosCompressedImage(WireReader reader);
 RosCameraInfo ReadRosCameraInfo(WireReader reader);
 
-// tf2_msgs/TFMessage or the older tf/tfMessage. Transforms that are not rigid
-// motions are left out.
+// tf2_msgs/TFMessage or the older tf/tfMessage; only rigid transforms.
 std::vector<RosTransform> ReadRosTransforms(WireReader reader);
 
 // geometry_msgs/Transform.

@@ -38,8 +38,7 @@ class FeatureSet {
  public:
   virtual ~FeatureSet() = default;
 
-  // Where the features are in their own frame. May be refined as more frames
-  // see them.
+  // Where the features are in their own frame.
   std::vector<Observation> observations;
 };
 

@@ -15,8 +15,7 @@ std::vector<int> SelectOverGrid(const std::vector<cv::KeyPoint>& keypoints,
                                 const Frame& frame, int max_count,
                                 const DepthLookupOptions& depth_options);
 
-// Returns about max_corners FAST corners with depth, selected by
-// SelectOverGrid.
+// Returns about max_corners FAST corners by SelectOverGrid.
 std::vector<cv::Point2f> DetectGridCorners(
     const Frame& frame, int max_corners,
     const DepthLookupOptions& depth_options);

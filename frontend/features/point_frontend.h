@@ -29,8 +29,7 @@ class PointFrontend : public Frontend {
 
   // Finds `points` of the frame `from`, which has no depth any more, in the
   // frame `to`. On entry `moved` holds the places predicted by the guess, and
-  // all points count as found. If `moved` or `found` changes its size, Match
-  // throws InputError.
+  // all points count as found. Match throws InputError if sizes change.
   virtual void Follow(const PreparedFrame& from, const Points& points,
                       const PreparedFrame& to, Points* moved, Found* found) = 0;
 };

@@ -1,6 +1,5 @@
 #include <yaml-cpp/yaml.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <sstream>

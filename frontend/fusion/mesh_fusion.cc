@@ -51,7 +51,17 @@ MeshFusion::MeshFusion(const MeshFusionOptions& options)
 }
 
 void MeshFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
-  SetDepthScale(frame.depth_scale);
+  if (frame.depth_scale != depth_scale_) {
+    depth_scale_ = frame.depth_scale;
+    max_steps_.assign(Frame::kNoDepth + 1, -1);
+    for (int raw = 1; raw < Frame::kNoDepth; ++raw) {
+      const double z = raw / depth_scale_;
+      const DepthLookupOptions& depth = options_.depth;
+      if (z < depth.min_depth || z > depth.max_depth) continue;
+      max_steps_[raw] = static_cast<int>(
+          std::lround(MaxSurfaceStep(z, depth.noise) * depth_scale_));
+    }
+  }
   KeepSurfacePixels(frame);
   const Rigid3d cam_from_world = world_from_cam.Inverse();
   std::vector<std::pair<uint64_t, TsdfVolume::Block*>> blocks;
@@ -69,18 +79,6 @@ TriangleMesh MeshFusion::Mesh() const {
   const double sigma = options_.voxel_size;
   return SurfaceMesh(volume_, options_.voxel_size,
                      static_cast<float>(1.0 / (sigma * sigma)));
-}
-
-void MeshFusion::SetDepthScale(double depth_scale) {
-  if (depth_scale == depth_scale_) return;
-  depth_scale_ = depth_scale;
-  max_steps_.assign(Frame::kNoDepth + 1, -1);
-  for (int raw = 1; raw < Frame::kNoDepth; ++raw) {
-    const double z = raw / depth_scale;
-    if (z < options_.depth.min_depth || z > options_.depth.max_depth) continue;
-    max_steps_[raw] = static_cast<int>(
-        std::lround(MaxSurfaceStep(z, options_.depth.noise) * depth_scale));
-  }
 }
 
 void MeshFusion::KeepSurfacePixels(const Frame& frame) {

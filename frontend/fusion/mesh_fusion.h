@@ -63,7 +63,6 @@ class MeshFusion {
 
   static constexpr int kDepthStepsPerMetre = 512;
 
-  void SetDepthScale(double depth_scale);
   const DepthUse& UseOf(float depth) const {
     return uses_[static_cast<int>(depth * float{kDepthStepsPerMetre})];
   }

@@ -58,10 +58,9 @@ class CovisibilityGraph {
   std::vector<std::vector<int>> neighbors_;
 };
 
-// Poses of keyframes and the motions measured between them. Keyframes have
-// numbers 0, 1, 2, ... The poses of a segment are connected; each segment has
-// its own world frame until it is joined to another one. The first keyframe of
-// a segment is fixed.
+// Poses of keyframes 0, 1, 2, ... and the motions measured between them. The
+// poses of a segment are connected; each segment has its own world frame until
+// it is joined to another one. The first keyframe of a segment is fixed.
 class KeyframeGraph {
  public:
   // See MappingOptions.
@@ -80,8 +79,7 @@ class KeyframeGraph {
   const std::vector<KeyframePair>& pairs() const { return pairs_; }
   const CovisibilityGraph& links() const { return links_; }
 
-  // Adds a keyframe and returns its number. With `is_held` it never moves (for
-  // a read-only map).
+  // Adds a keyframe and returns its number. With `is_held` it never moves.
   int Add(const Rigid3d& map_from_cam, int segment, bool is_held = false);
 
   // Adds a pair within a segment.
@@ -98,8 +96,7 @@ class KeyframeGraph {
 
   // Whether a keyframe is not fixed and the others stay connected without it.
   bool IsRedundant(int at) const;
-  // Removes a keyframe and its pairs. Its pose relative to `anchor` is constant
-  // from now on.
+  // Removes a keyframe and its pairs. From now on it moves with `anchor`.
   void Remove(int at, int anchor);
   bool IsRemoved(int at) const { return nodes_[at].from_anchor.has_value(); }
   // Converts a motion from a removed keyframe to one from its anchor. Other
@@ -117,8 +114,7 @@ class KeyframeGraph {
   std::vector<MotionMatrix> Covariances() const;
 
   // The effective covariance of a pair at the current poses: larger if the loss
-  // function reduces the pair's weight. Least squares with these covariances
-  // gives the same poses.
+  // reduces its weight. Least squares with these gives the same poses.
   MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const;
 
   // The error relative to the motion that explains the disagreement of pairs

@@ -12,9 +12,8 @@ namespace rgbd_pose {
 namespace {
 
 // Widths of the loss functions, in sigmas. Pairs of the odometry are hardly
-// ever wrong. Most others agree within one or two sigmas, but some motions
-// between distant views are up to ten sigmas too short and would shrink the
-// map.
+// ever wrong. Most others agree within one or two sigmas, but some between
+// distant views are up to ten sigmas too short and would shrink the map.
 constexpr double kTrackedWidth = 5.0;
 constexpr double kPairWidth = 2.0;
 

@@ -4,8 +4,7 @@
 
 #include "frontend/mapping/mapper.h"
 
-// Finds keyframes that see the same place as the newest one and measures the
-// motions between them.
+// Finds keyframes that see the place of the newest one, and their motions.
 
 namespace rgbd_pose {
 namespace {
@@ -35,8 +34,7 @@ constexpr size_t kMaxReferences = 24;
 constexpr double kMinSeenShare = 0.1;
 constexpr double kMaxPairSigma = 3.0;
 
-// A pair that differs from its initial guess, by poses or descriptors, by more
-// than this is wrong.
+// A pair farther from its initial guess, by poses or descriptors, is wrong.
 constexpr double kMaxPairRotation = 0.2;     // rad
 constexpr double kMaxPairTranslation = 0.3;  // m
 
@@ -123,8 +121,7 @@ const Reference* Mapper::ReferenceOf(int at) {
   return references_.front().second.get();
 }
 
-// Pairs the newest keyframe with those of its segment that, by their poses, see
-// the same.
+// Pairs the newest keyframe with those of its segment that see the same.
 void Mapper::PairByPose(int newest, const PreparedFrame& frame) {
   for (const int at : SeeingTheSame(newest)) {
     const bool is_loop = !graph_.links().Within(newest, kLoopHops)[at];

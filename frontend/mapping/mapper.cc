@@ -136,8 +136,7 @@ std::optional<Keyframe> Mapper::Find(const PreparedFrame& lost) {
   return WithImages(found->keyframe);
 }
 
-// Finds the keyframe with the nearest view, without those that the odometry
-// itself has.
+// Finds the keyframe with the nearest view, but none that the odometry has.
 void Mapper::FindReturn(int newest, MapUpdate* update) const {
   double least = 2.0 * kRedundantFlowPx;
   int nearest = -1;

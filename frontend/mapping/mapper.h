@@ -23,8 +23,7 @@ namespace rgbd_pose {
 // The options of Mapper.
 struct MappingOptions {
   // Maximum number of older keyframes that a new one is paired with by its
-  // pose: half see most of its view, half are the oldest ones, which limit the
-  // drift.
+  // pose: half see most of its view, half, the oldest, limit the drift.
   int max_pairs = 8;
 
   // Two keyframes see the same if each shows this share of the other's view.
@@ -104,8 +103,7 @@ class Mapper {
   // measured, or `as_solved` by KeyframeGraph::CovarianceAsSolved.
   KeyframeMap Map(bool as_solved = false) const;
 
-  // The poses and pairs of keyframes. Its covariances are in the order of
-  // keyframes in Map().
+  // The poses and pairs of keyframes; covariances in the order of Map().
   const KeyframeGraph& graph() const { return graph_; }
 
  private:

@@ -155,8 +155,7 @@ std::vector<PlaceCandidate> PlaceDatabase::Query(
   std::vector<double> scores(blocks_.size(), 0.0);
   std::vector<int> marks(blocks_.size(), -1);
   std::vector<int> alike;
-  // A feature in n of N keyframes has the weight log((N + 1) / n); n = 0 counts
-  // as n = 1.
+  // A feature in n of N keyframes has the weight log((N + 1) / max(n, 1)).
   const double all = size() + 1.0;
   double total = 0.0;
   for (int row = 0; row < descriptors.rows; ++row) {

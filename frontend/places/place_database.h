@@ -25,8 +25,7 @@ struct PlaceCandidate {
 // The same calls give the same results. Several threads may call Query at once.
 class PlaceDatabase {
  public:
-  // At most this many descriptors of a keyframe are stored, evenly spread over
-  // the rows.
+  // At most this many descriptors of a keyframe, spread evenly, are stored.
   static constexpr int kMaxDescriptors = 400;
 
   // `descriptors`: CV_8U, n x 32, one per row. Throws InputError for another
@@ -49,8 +48,7 @@ class PlaceDatabase {
   static constexpr int kWords = 8;
   using Descriptor = std::array<uint32_t, kWords>;
 
-  // A descriptor and, for each of its words, the next entry in the bucket: as
-  // large as a cache line.
+  // A descriptor and, by word, the next entry in the bucket: a cache line.
   struct Entry {
     Descriptor words;
     std::array<int, kWords> next;

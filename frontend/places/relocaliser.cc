@@ -6,8 +6,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Limits of one search: describing an image takes about 8 ms, comparing with a
-// described one 3 ms.
+// Limits of one search: to describe an image takes 8 ms, to compare two 3 ms.
 constexpr size_t kMaxLooks = 5;
 constexpr size_t kMaxDescriptions = 2;
 

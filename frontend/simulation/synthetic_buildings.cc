@@ -90,8 +90,7 @@ void Furnish(const Vector2d& from, const Vector2d& to, int kind, Scene* scene) {
   }
 }
 
-// A room around the world's z axis, with furniture along all four walls, away
-// from the corners.
+// A room around the world's z axis, with furniture along its walls.
 void PutFurnishedRoom(const Vector2d& size, Scene* scene) {
   PutFloorAndCeiling({0, 0}, size, scene);
   const Vector2d x(size.x() / 2, 0.0);

@@ -282,8 +282,7 @@ Rigid3d TwoRoomsTour(double t, double /*duration*/) {
          Sway(t);
 }
 
-// Looks left at the furniture all the way: only the wall is visible, not the
-// end of the corridor.
+// Looks left at the furniture: never sees the end of the corridor.
 Rigid3d TwinCorridorsTour(double t, double /*duration*/) {
   static const Way way({{1.6, -0.6}, {20.4, -0.6}}, false);
   constexpr double kThere = 55.0;  // s

@@ -33,8 +33,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int kTileSize = 32;
-// Faces extend this far (m) beyond their edges to avoid cracks from rounding
-// where two faces meet.
+// Faces extend this far (m) beyond their edges, against cracks by rounding.
 constexpr float kOverlap = 1e-4f;
 // Blur of the lens and of the colour filter mosaic (sigma, px).
 constexpr double kLensBlur = 0.6;

@@ -53,13 +53,11 @@ inline void AddBox(const SceneBox& box, const Material& m, Scene* scene) {
 //   room         furnished and textured everywhere
 //   plain_room   furnished, each piece in one colour: edges and shading only
 //   glossy_room  room with highlights that move with the camera
-//   corridor     40 m along the world's x axis, without texture: the position
-//                along this axis cannot be observed
+//   corridor     40 m along x, without texture: x cannot be observed
 //   poster_wall  one textured plane: texture, but no shape
 // Scenes for tours, with paths of the same name (synthetic_path.h); furniture
 // stands in rows along walls:
-//   table           a room of 9.4 x 7 m with two desks, end to end, in its
-//                   middle
+//   table           a room of 9.4 x 7 m, two desks end to end in its middle
 //   two_rooms       of 5.4 x 5.4 m, with a door of 1.2 m between them
 //   twin_corridors  2.4 m wide and 8 m long, a hall between them; the second is
 //                   kTwinShift further along x, with the same texture and light

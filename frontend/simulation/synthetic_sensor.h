@@ -27,9 +27,8 @@ cv::Mat EncodeDepth(const cv::Mat& depth_m, double depth_scale);
 // Simulates the sensor for an exact depth image (CV_32FC1, m): noise and
 // quantisation in disparity, no depth out of range, in the shadow of the
 // projector (left of near objects), at depth edges and on steeply slanted
-// surfaces. `focal_px` is the focal length of the image. The noise of each
-// pixel is independent (in a real sensor it is correlated over a few pixels)
-// and drawn from `key` alone.
+// surfaces. `focal_px`: of the image. The noise is drawn from `key` alone, for
+// each pixel independently (in a real sensor it is correlated over a few).
 cv::Mat MeasureDepth(const cv::Mat& depth_m, double focal_px, uint64_t key);
 
 // Adds white noise of kColorSigma to a CV_8UC3 image, drawn from `key` alone.
@@ -50,9 +49,8 @@ double DriftingGain(double amplitude, double t);
 // What a camera on a path world_from_cam(t) sees at time t; with a rolling
 // shutter, the time of the middle row (see Renderer). Colour is the mean of an
 // odd number of renderings, evenly spread over the exposure time around t and
-// at most about kMaxBlurStep apart in the image, times the gain, rounded once
-// and clipped at 255: grey levels are proportional to light. Depth is not
-// mixed.
+// at most about kMaxBlurStep apart in the image, times the gain, clipped at
+// 255: grey levels are proportional to light. Depth is not mixed.
 constexpr double kMaxBlurStep = 2.0;  // px; finer steps are blurred by the lens
 Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,

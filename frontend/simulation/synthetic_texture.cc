@@ -19,9 +19,8 @@ constexpr float kAmplitudeRatio = 0.8f;
 constexpr float kTurnCos = 0.8f;
 constexpr float kTurnSin = 0.6f;
 
-// All octaves of the grain at once, in the compiler's own vectors. Only basic
-// arithmetic and conversions are used: the bits are the same with every
-// instruction set.
+// All octaves of the grain at once, in the compiler's own vectors. With basic
+// arithmetic alone, the bits are the same with every instruction set.
 typedef float Floats __attribute__((vector_size(kOctaves * sizeof(float))));
 typedef int32_t Ints __attribute__((vector_size(kOctaves * sizeof(float))));
 typedef uint32_t Words __attribute__((vector_size(kOctaves * sizeof(float))));
@@ -92,8 +91,7 @@ OctaveTable MakeOctaves() {
   Floats noise;
   SmoothNoise(x / octaves.cell, y / octaves.cell, seed + octaves.number,
               &noise);
-  // An octave vanishes when its shortest wavelength, two cells, is below two
-  // pixels.
+  // An octave vanishes when its cells are smaller than pixels.
   Floats visible = octaves.cell / footprint - 1.0f;
   visible = visible < 0.0f ? Floats{} : visible;
   visible = visible > 1.0f ? Floats{} + 1.0f : visible;

@@ -6,8 +6,7 @@
 namespace rgbd_pose {
 
 // The grain of a surface at (u, v) (m) for a pixel of extent `footprint` (m): a
-// sum of octaves of value noise in about -3..3. The bits are the same with
-// every instruction set.
+// sum of octaves of value noise, about -3..3, the same on every machine.
 float Grain(float u, float v, float footprint, uint32_t seed);
 
 // A procedural surface: colour, grain (several octaves of noise), tiles

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"

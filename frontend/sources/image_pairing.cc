@@ -50,14 +50,11 @@ void ImagePairing::AddDepth(StampedImage image) {
   while (colors_.empty() && IsFull(depths_)) depths_.erase(depths_.begin());
 }
 
-bool ImagePairing::CanDecide() const {
-  if (colors_.empty()) return false;
-  return is_finished_ || IsFull(colors_) || IsFull(depths_) ||
-         (colors_.size() > kWindow && depths_.size() > kWindow);
-}
-
 std::optional<PairedImages<StampedImage>> ImagePairing::Take() {
-  while (CanDecide()) {
+  // As long as the depth image of the first colour image is certain.
+  while (!colors_.empty() &&
+         (is_finished_ || IsFull(colors_) || IsFull(depths_) ||
+          (colors_.size() > kWindow && depths_.size() > kWindow))) {
     const std::vector<IndexPair> pairs =
         Associate(TimesOf(colors_), TimesOf(depths_), max_difference_);
     PairedImages<StampedImage> pair;

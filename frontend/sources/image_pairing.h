@@ -43,8 +43,7 @@ class ImagePairing {
       : max_difference_(max_difference) {}
 
   // Adds the next image of a stream. Images with a known stamp are left out,
-  // and so are those that come after later ones were processed; AddColor
-  // returns false for these.
+  // and those that come after later ones were processed (AddColor: false).
   bool AddColor(StampedImage image);
   void AddDepth(StampedImage image);
 
@@ -71,9 +70,6 @@ class ImagePairing {
   static constexpr size_t kMaxBytes = size_t{256} << 20;
 
  private:
-  // Whether the depth image of the first colour image is certain.
-  bool CanDecide() const;
-
   const double max_difference_;
   std::set<StampedImage> colors_;  // that wait for their counterparts
   std::set<StampedImage> depths_;
@@ -92,8 +88,7 @@ struct StreamImage {
   cv::Mat pixels;         // not shared
 };
 
-// Pairs the colour and depth images of a live camera, which arrive in any
-// order, by their stamps.
+// Pairs the images of a live camera, which come in any order, by their stamps.
 class ApproximateTimeSync {
  public:
   // Images of a pair are at most `max_time_difference` (s) apart. After
@@ -102,9 +97,8 @@ class ApproximateTimeSync {
                       std::chrono::milliseconds patience)
       : max_time_difference_(max_time_difference), patience_(patience) {}
 
-  // The next pair, in order of time. `read` waits for an image. Throws what
-  // `read` throws, and InputError, which begins with `name` (of the camera), if
-  // images come but no pair.
+  // The next pair, in order of time. `read` waits for an image. Throws what it
+  // throws, and InputError with `name` (of the camera) if no pair comes.
   PairedImages<StreamImage> Next(const std::string& name,
                                  const std::function<StreamImage()>& read);
 

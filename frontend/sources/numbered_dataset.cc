@@ -14,8 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number that is at the place of * in a name; nothing if the name differs
-// elsewhere.
+// The number in the place of * in a name; nothing if it differs elsewhere.
 std::optional<int> NumberIn(const std::string& name,
                             const std::string& pattern) {
   const size_t star = pattern.find('*');

@@ -1,7 +1,6 @@
 #include "frontend/sources/numbered_layouts.h"
 
 #include <cmath>
-#include <filesystem>
 #include <opencv2/core.hpp>
 
 #include "core/evaluation/trajectory.h"
@@ -159,8 +158,7 @@ NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
   return poses;
 }
 
-// traj.txt: the 16 numbers of each frame, in order, one frame per line (Replica
-// as NICE-SLAM ships it).
+// traj.txt: the 16 numbers of each frame, in order, a frame per line (Replica).
 NumberedPoses ReadPoseLines(const NumberedFolder& folder) {
   const std::string path = (folder.path / "traj.txt").string();
   NumberedPoses poses;

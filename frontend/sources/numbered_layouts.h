@@ -32,8 +32,7 @@ struct NumberedLayout {
   const char* name;  // of the source
   const char* what;  // description for messages
 
-  // Its images, with * for the number; the first alternative with any images is
-  // used.
+  // Its images, with * for the number, by the first alternative with any.
   std::vector<std::string> color;
   std::vector<std::string> depth;
 

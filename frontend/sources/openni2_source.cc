@@ -164,8 +164,7 @@ class OpenNi2Source final : public FrameSource {
     return setup;
   }
 
-  // Waits for the next image. It is copied, because its frame belongs to the
-  // driver, which has few.
+  // Waits for the next image; copies it, as the driver has few frames.
   StreamImage Read() {
     openni::VideoStream* streams[] = {&color_, &depth_};
     int ready = 0;

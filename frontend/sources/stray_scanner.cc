@@ -40,8 +40,7 @@ Camera Scaled(const Camera& camera, const cv::Size& size) {
           (camera.cy + 0.5) * y - 0.5};
 }
 
-// The affine map from pixels of `from` to those of `to`, for cameras at the
-// same pose.
+// The affine map from pixels of `from` to those of `to`, at the same pose.
 cv::Matx23d PixelMap(const Camera& from, const Camera& to) {
   const double x = to.fx / from.fx;
   const double y = to.fy / from.fy;

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
-#include <optional>
 #include <system_error>
 
 #include "core/util/format.h"

@@ -57,8 +57,7 @@ class DirectTracker final : public Tracker {
   // Estimates the velocity from the motion, then the motion again with it.
   void FindTwist(const Reference& reference, const PreparedFrame& frame,
                  const TrackingGuess& guess, TrackingResult* tracked);
-  // Sets everything that follows from the estimate. `is_alone`: without
-  // features.
+  // Sets what follows from the estimate. `is_alone`: without features.
   void Judge(const Reference& reference, const PreparedFrame& frame,
              bool is_alone, TrackingResult* tracked) const;
 

@@ -26,19 +26,6 @@ constexpr double kMaxRivalCells = 0.7;
 // more than 0.64.
 constexpr double kMinAgreeingViewOk = 0.45;
 
-// Corrects image points by the frame's velocity instead of by `moved_by`.
-void MoveAgain(const FeatureSet& features, const Frame& frame,
-               const FrameTiming& moved_by, const FrontendOptions& images,
-               FeatureMatches* found) {
-  const FeatureMatches before = *found;
-  found->Clear();
-  for (size_t i = 0; i < before.features.size(); ++i) {
-    found->Add(features, before.features[i],
-               ObserveAgain(frame, images.camera, moved_by,
-                            before.matches[i].cur, images.depth));
-  }
-}
-
 double ShareOf(const FeatureReference& reference,
                const TrackingResult& tracked) {
   return static_cast<double>(tracked.estimate.num_inliers) /
@@ -214,7 +201,13 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
     }
     seen.twist = found.twist;
     for (FeatureMatches* part : {&tracked->matches, &tracked->on_probation}) {
-      MoveAgain(features, seen, moved_by, images(), part);
+      const FeatureMatches before = *part;
+      part->Clear();
+      for (size_t i = 0; i < before.features.size(); ++i) {
+        part->Add(features, before.features[i],
+                  ObserveAgain(seen, images().camera, moved_by,
+                               before.matches[i].cur, images().depth));
+      }
     }
     moved_by = seen.Timing();
     Estimate(estimate.cur_from_prev, tracked);

@@ -35,9 +35,8 @@ class HybridTracker final : public Tracker {
   const FrontendOptions& images() const override { return features_->images(); }
 
  private:
-  // Refines the motion of the features by pixels. Returns false if pixels
-  // contradict it or do not determine one; then only time and iterations
-  // change.
+  // Refines the motion of the features by pixels. Returns false, and changes
+  // only time and iterations, if pixels contradict it or determine none.
   bool RefineByPixels(const Reference& direct, const PreparedFrame& frame,
                       TrackingResult* tracked);
   // Compares a motion from few features with that of pixels alone: ok if they

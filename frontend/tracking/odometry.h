@@ -51,8 +51,7 @@ struct OdometryOptions {
   // How long (s) the previous segment is searched for after a new one starts.
   double new_segment_after = 1.5;
 
-  // Standard deviations of a motion guess between two frames that comes without
-  // a covariance.
+  // Standard deviations of a motion guess that comes without a covariance.
   double guess_sigma_rotation = 0.01;     // rad
   double guess_sigma_translation = 0.01;  // m
 
@@ -175,8 +174,7 @@ class Odometry {
   // Sets the pose from the motion found since reference_. Adds the motion as
   // the first edge of the result.
   void TakeMotion(TrackedFrame* result);
-  // Updates the state after a frame was tracked against reference_. Changes the
-  // reference if needed.
+  // Updates the state after tracking against reference_, which may change.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
   bool NeedsNewReference() const;
   // Returns null, and why, if the frame cannot be a reference. `last`: against

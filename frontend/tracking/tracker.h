@@ -42,8 +42,7 @@ struct TrackerOptions {
   double min_seen_share = 0.15;
   double min_likeness = 0.25;
 
-  // Finds the start of the solver in the matches themselves; null: the solver
-  // starts from the guess.
+  // Finds the start of the solver in the matches; null: it is the guess.
   const InitialGuess* initial_guess = nullptr;
 
   // Standard deviations of the motion between two frames around a guess that

@@ -12,8 +12,7 @@ namespace {
 
 enum class TrackerKind { kFeatures, kDirect, kHybrid };
 
-// A new tracker needs a header, its kind and row here, and a way to be made
-// below.
+// A new tracker needs a header, its kind and row here, and its making below.
 constexpr Named<TrackerKind> kTrackers[] = {
     {"features", TrackerKind::kFeatures},
     {"direct", TrackerKind::kDirect},

@@ -41,8 +41,7 @@ cv::Scalar ColorAt(const cv::Mat& colors, double weight) {
 struct Strip {
   int width;  // of the image, px
 
-  // Thickness of lines and letters, px. Everything grows with images wider than
-  // 640 px.
+  // Thickness of lines and letters, px; all grows with widths above 640 px.
   int unit = std::max(1, width / 640);
   int margin = 6 * unit;
   int row_height = 18 * unit;
@@ -154,12 +153,10 @@ cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
 cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
                       const Rigid3d& cur_from_ref) {
   constexpr double kFullColor = 20.0;  // grey levels
-  // Grey levels that agree use only the lower half of the scale, which makes
-  // colours stand out.
+  // Grey levels that agree use the lower half of the scale: colours stand out.
   constexpr double kDimmed = 0.5;
   const auto& [gray, camera] = reference.levels[1];
-  // Where the frame sees each pixel of level 1 of the reference: px of level 1
-  // of the frame.
+  // Where the frame sees each pixel of the reference, both at level 1: px.
   cv::Mat places(gray.height, gray.width, CV_32FC2, cv::Scalar::all(-1.0));
   cv::Mat valid(places.size(), CV_8UC1, cv::Scalar(0));
   for (int v = 0; v < places.rows; ++v) {

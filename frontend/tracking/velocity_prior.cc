@@ -6,8 +6,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Lower limits of the change of velocity from frame to frame, for a camera on a
-// tripod.
+// Lower limits of the change of velocity per frame, for a camera on a tripod.
 constexpr double kMinChangeAngular = 0.01;
 constexpr double kMinChangeLinear = 0.005;
 

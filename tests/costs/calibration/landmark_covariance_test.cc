@@ -174,9 +174,8 @@ TEST(ReducedCameraSystemTest, AreThoseOfAllUnknownsWithoutTheDepths) {
                              DataOf(problem.views, landmark, problem.state));
     }
     dense.EliminateDepths();
-    const ReducedCameraSystem equations =
-        MakeReducedCameraSystem(problem.views, training_only, problem.origin,
-                                problem.state, PosesOf(problem.state));
+    const ReducedCameraSystem equations = MakeReducedCameraSystem(
+        problem.views, training_only, problem.origin, problem.state);
     const Eigen::MatrixXd lower =
         equations.hessian.triangularView<Eigen::Lower>();
     const Eigen::MatrixXd expected = dense.H.triangularView<Eigen::Lower>();
@@ -206,8 +205,7 @@ void ExpectInverseAndSandwich(Problem problem, double correction) {
     problem.views.distances.push_back(known);
   }
   const ReducedCameraSystem equations = MakeReducedCameraSystem(
-      problem.views, /*training_only=*/true, problem.origin, problem.state,
-      PosesOf(problem.state));
+      problem.views, /*training_only=*/true, problem.origin, problem.state);
   const int y_at = equations.PlaceOfY();
 
   Eigen::MatrixXd exact =

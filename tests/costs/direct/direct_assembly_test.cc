@@ -24,7 +24,7 @@ const DirectPair& Pair() {
 
 DirectOptions FewPoints() {
   DirectOptions options;
-  options.max_points = options.max_coarse_points = 800;
+  options.max_points = 800;
   return options;
 }
 

@@ -321,8 +321,6 @@ TEST(DirectOptionsTest, CheckSaysWhatIsWrong) {
   EXPECT_EQ(DirectOptions().Check(), "");
   expect([](auto* o) { o->max_points = -1; },
          "max_points must not be negative");
-  expect([](auto* o) { o->max_coarse_points = 0; },
-         "max_coarse_points must be positive");
   expect([](auto* o) { o->min_gradient = -1.0; }, "min_gradient");
   expect([](auto* o) { o->min_gradient = kNaN; }, "min_gradient");
   expect([](auto* o) { o->min_depth = 0.0; }, "depth");

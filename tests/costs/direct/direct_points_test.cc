@@ -193,7 +193,7 @@ std::vector<Eigen::VectorXd> SmoothPointsOf(const PaintedFrame& frame,
   DirectOptions options;
   options.max_points = 1;
   options.max_depth = max_depth;
-  SmoothPoints(frame.view, options, &points);
+  SmoothPoints(frame.view, /*level=*/0, options, &points);
   return Rows(points, 7);
 }
 
