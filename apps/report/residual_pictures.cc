@@ -19,6 +19,8 @@ constexpr double kWidth = 440.0;
 // Wrong matches would dominate the pictures.
 constexpr double kMostPx = 20.0;
 
+using Vectors = std::vector<Eigen::Vector2d>;
+
 // Mean residuals per image cell as arrows, enlarged by `zoom`.
 std::string Arrows(const CalibrationResult& result, bool after, double zoom) {
   const Camera& camera = result.camera.camera;
@@ -66,7 +68,9 @@ ChartSeries Binned(const CalibrationResult& result, bool after, Key key,
   std::vector<const HeldOutResidual*> sorted;
   for (const HeldOutResidual& residual : result.residuals) {
     const double px = (after ? residual.after : residual.before).norm();
-    if (px < kMostPx) sorted.push_back(&residual);
+    // A landmark at infinity has no motion.
+    const bool is_known = residual.flow.allFinite() && px < kMostPx;
+    if (is_known) sorted.push_back(&residual);
   }
   std::sort(sorted.begin(), sorted.end(),
             [&](const auto* a, const auto* b) { return key(*a) < key(*b); });
@@ -77,7 +81,7 @@ ChartSeries Binned(const CalibrationResult& result, bool after, Key key,
   const size_t bins = std::min(kBins, sorted.size() / kFew);
   for (size_t bin = 0; bin < bins; ++bin) {
     double keys = 0.0;
-    std::vector<Eigen::Vector2d> residuals, flows;
+    Vectors residuals, flows;
     const size_t begin = bin * sorted.size() / bins;
     const size_t end = (bin + 1) * sorted.size() / bins;
     for (size_t i = begin; i < end; ++i) {
@@ -89,8 +93,6 @@ ChartSeries Binned(const CalibrationResult& result, bool after, Key key,
   }
   return line;
 }
-
-using Vectors = std::vector<Eigen::Vector2d>;
 
 // How much later (ms) than expected these pixels were exposed: seen is
 // predicted + flow t, so the residual is -flow t; t by least squares.

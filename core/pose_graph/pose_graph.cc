@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <numeric>
 
 #include "core/pose_graph/graph_problem.h"
 #include "core/util/input_error.h"
@@ -66,22 +66,29 @@ std::string FindBadInput(const GraphTerms& graph) {
   return "";
 }
 
-// A pose with no connection to a fixed pose.
+// A pose with no connection to a fixed pose. Groups connected poses by the
+// smallest number among them (union-find); one more number stands for the world
+// of all fixed ones.
 std::string FindUnanchoredPose(const GraphTerms& graph) {
-  std::vector<bool> is_anchored;
-  for (const GraphTerms::Pose& pose : graph.poses) {
-    is_anchored.push_back(pose.is_fixed);
+  const int world = static_cast<int>(graph.poses.size());
+  std::vector<int> root(world + 1);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int pose) {
+    while (root[pose] != pose) pose = root[pose] = root[root[pose]];
+    return pose;
+  };
+  const auto join = [&](int a, int b) {
+    a = find(a);
+    b = find(b);
+    root[std::max(a, b)] = std::min(a, b);
+  };
+  for (const GraphTerms::Edge& edge : graph.edges) join(edge.ref, edge.cur);
+  for (int i = 0; i < world; ++i) {
+    if (graph.poses[i].is_fixed) join(i, world);
   }
-  for (bool has_grown = true; has_grown;) {
-    has_grown = false;
-    for (const GraphTerms::Edge& edge : graph.edges) {
-      if (is_anchored[edge.ref] == is_anchored[edge.cur]) continue;
-      is_anchored[edge.ref] = is_anchored[edge.cur] = has_grown = true;
-    }
-  }
-  for (size_t i = 0; i < is_anchored.size(); ++i) {
-    if (is_anchored[i]) continue;
-    return NameOf(static_cast<int>(i)) + " is not connected to any fixed pose";
+  for (int i = 0; i < world; ++i) {
+    if (find(i) == find(world)) continue;
+    return NameOf(i) + " is not connected to any fixed pose";
   }
   return "";
 }
