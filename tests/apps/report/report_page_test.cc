@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
+#include "apps/calibration/calibration_result.h"
 #include "apps/report/report_data.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
@@ -101,6 +103,24 @@ TEST(RunReportData, TheCloudIsThatOfTheRun) {
   folder.Write("cloud_preview.json", "[]");
   ExpectInputError([&] { RunReportData(folder.path()); },
                    {"cloud_preview.json"});
+}
+
+// A landmark at infinity has no known motion.
+TEST(ResidualPictures, LeaveOutWhatHasNoMotion) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CalibrationResult known, all;
+  for (int i = 0; i < 100; ++i) {
+    // Beside the image: only the charts are drawn.
+    HeldOutResidual residual = {
+        -100.0, 4.0 * i, {0.5, 0.0}, {0.1, 0.0}, {100.0 + i, 0.0}};
+    known.residuals.push_back(residual);
+    all.residuals.push_back(residual);
+    residual.flow.setConstant(nan);
+    all.residuals.push_back(residual);
+  }
+  EXPECT_THAT(ResidualPictures(known),
+              testing::HasSubstr("Exposed later than expected"));
+  EXPECT_EQ(ResidualPictures(all), ResidualPictures(known));
 }
 
 TEST(ReportPage, WordsOfTheDataCannotEndItsScript) {
