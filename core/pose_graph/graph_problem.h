@@ -1,19 +1,10 @@
 #pragma once
 
-#include <ceres/covariance.h>
-#include <ceres/crs_matrix.h>
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
-#include <cmath>
 #include <deque>
-#include <limits>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "core/estimation/batch_loss.h"
@@ -32,33 +23,8 @@ namespace rgbd_pose {
 using PosePairJacobian = Eigen::Matrix<double, 6, 12, Eigen::RowMajor>;
 using RowMajorBlock = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-// The rotation about the axes of the camera (rad) caused by small changes of
-// the angles (rad) at x: the columns of d omega / d[alpha beta gamma].
-inline Eigen::Matrix3d EulerRates(const double* x) {
-  const double sb = std::sin(x[1]), cb = std::cos(x[1]);
-  const double sg = std::sin(x[2]), cg = std::cos(x[2]);
-  Eigen::Matrix3d axes;
-  axes << cb * cg, -sg, 0, cb * sg, cg, 0, -sb, 0, 1;
-  return axes;
-}
-
 // S with S^T S = information; NaN if that is not positive semi-definite.
-inline MotionMatrix SqrtInformation(const MotionMatrix& information) {
-  MotionMatrix none =
-      MotionMatrix::Constant(std::numeric_limits<double>::quiet_NaN());
-  if (!information.allFinite()) return none;
-  // Scaled first: rotation and translation differ by orders of magnitude.
-  const MotionVector size =
-      information.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
-          [](double value) { return value > 0.0 ? value : 1.0; });
-  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
-      size.cwiseInverse().asDiagonal() * information *
-      size.cwiseInverse().asDiagonal());
-  // Rounding changes zero eigenvalues by about 1e-16.
-  if (eigen.eigenvalues().minCoeff() < -1e-9) return none;
-  return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         eigen.eigenvectors().transpose() * size.asDiagonal();
-}
+MotionMatrix SqrtInformation(const MotionMatrix& information);
 
 // A measured motion between two poses as six rows,
 //
@@ -78,21 +44,7 @@ struct RelativePoseErrorTerm {
   // Returns r. Turns `jacobian`, unless null, from d[omega C] / d[x_ref x_cur]
   // into d r / d[x_ref x_cur]; omega is as in MotionEstimate.
   MotionVector ResidualAt(const RotationAndCenter<double>& motion,
-                          PosePairJacobian* jacobian) const {
-    Eigen::Quaterniond q(motion.R * measured.R.transpose());
-    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-    MotionVector e;
-    e << 2.0 * q.vec(), motion.C - measured.C;
-    if (jacobian != nullptr) {
-      // Exp(omega) q changes 2 vec q by w omega + omega x vec q.
-      const Eigen::Matrix3d by_omega =
-          q.w() * Eigen::Matrix3d::Identity() - CrossMatrix(q.vec());
-      PosePairJacobian de = *jacobian;
-      de.topRows<3>() = by_omega * jacobian->topRows<3>();
-      jacobian->noalias() = root * de;
-    }
-    return root * e;
-  }
+                          PosePairJacobian* jacobian) const;
 };
 
 // An edge with its hand-written Jacobian. The origins must outlive it.
@@ -103,27 +55,7 @@ class EdgeBlock final : public ceres::SizedCostFunction<6, 6, 6> {
       : term_(term), ref_(ref), cur_(cur) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const RotationAndCenter<double> ref = ref_->PoseAt(parameters[0]);
-    const RotationAndCenter<double> cur = cur_->PoseAt(parameters[1]);
-    const RotationAndCenter<double> motion = {cur.R * ref.R.transpose(),
-                                              ref.R * (cur.C - ref.C)};
-    const Eigen::Matrix3d axes = EulerRates(parameters[0]);
-    PosePairJacobian jacobian = PosePairJacobian::Zero();
-    jacobian.block<3, 3>(0, 0) = -motion.R * axes;
-    jacobian.block<3, 3>(0, 6) = EulerRates(parameters[1]);
-    jacobian.block<3, 3>(3, 0) = -CrossMatrix(motion.C) * axes;
-    jacobian.block<3, 3>(3, 3) = -ref.R;
-    jacobian.block<3, 3>(3, 9) = ref.R;
-    Eigen::Map<MotionVector>(residuals, 6) =
-        term_.ResidualAt(motion, jacobians != nullptr ? &jacobian : nullptr);
-    for (int pose = 0; jacobians != nullptr && pose < 2; ++pose) {
-      if (jacobians[pose] == nullptr) continue;
-      Eigen::Map<RowMajorBlock>(jacobians[pose], 6, 6) =
-          jacobian.middleCols<6>(6 * pose);
-    }
-    return true;
-  }
+                double** jacobians) const override;
 
  private:
   const RelativePoseErrorTerm term_;
@@ -135,33 +67,7 @@ class EdgeBlock final : public ceres::SizedCostFunction<6, 6, 6> {
 class GraphProblem {
  public:
   // The losses on edges are widened by the factor `width`.
-  GraphProblem(const GraphTerms& graph, double width)
-      : x_(graph.poses.size(), MotionVector::Zero()) {
-    origins_.reserve(graph.poses.size());
-    for (const GraphTerms::Pose& pose : graph.poses) {
-      origins_.emplace_back(pose.world_from_cam.Inverse());
-    }
-    ceres::Problem::Options options;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    // PoseGraph::Solve checks the input.
-    options.disable_all_safety_checks = true;
-    problem_ = std::make_unique<ceres::Problem>(options);
-    for (size_t i = 0; i < x_.size(); ++i) {
-      problem_->AddParameterBlock(x_[i].data(), 6);
-      if (graph.poses[i].is_fixed) {
-        problem_->SetParameterBlockConstant(x_[i].data());
-      }
-    }
-    for (const GraphTerms::Edge& edge : graph.edges) {
-      if (graph.IsIdle(edge.ref, edge.cur)) continue;
-      ceres::LossFunction* loss = nullptr;
-      if (edge.loss != nullptr) loss = &losses_.emplace_back(edge.loss, width);
-      problem_->AddResidualBlock(
-          new EdgeBlock({edge.cur_from_ref, edge.root}, &origins_[edge.ref],
-                        &origins_[edge.cur]),
-          loss, x_[edge.ref].data(), x_[edge.cur].data());
-    }
-  }
+  GraphProblem(const GraphTerms& graph, double width);
 
   // Whether no measurement could move a pose.
   bool is_empty() const { return problem_->NumResidualBlocks() == 0; }
@@ -179,56 +85,11 @@ class GraphProblem {
   // m); -1 if there is none. The pivots of a Cholesky decomposition are the
   // information on one parameter if those eliminated before it are unknown and
   // those after it known: an upper bound, exact for the last pivot.
-  int FindUndetermined(double max_standard_deviation) {
-    if (is_empty()) return -1;
-    std::vector<int> free;  // the pose of each six columns
-    ceres::Problem::EvaluateOptions evaluate;
-    for (size_t i = 0; i < x_.size(); ++i) {
-      if (IsConstant(static_cast<int>(i))) continue;
-      free.push_back(static_cast<int>(i));
-      evaluate.parameter_blocks.push_back(x_[i].data());
-    }
-    ceres::CRSMatrix crs;  // the Jacobian of all residuals under their losses
-    problem_->Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
-    using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
-    const Eigen::Map<const Sparse> J(
-        crs.num_rows, crs.num_cols, static_cast<int>(crs.values.size()),
-        crs.rows.data(), crs.cols.data(), crs.values.data());
-    const Eigen::SparseMatrix<double> H = J.transpose() * J;
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(H);
-    const double least =
-        1.0 / (max_standard_deviation * max_standard_deviation);
-    const Eigen::VectorXd pivots = ldlt.vectorD();
-    for (int k = 0; k < pivots.size(); ++k) {
-      if (ldlt.info() == Eigen::Success && pivots[k] >= least) continue;
-      return free[ldlt.permutationPinv().indices()[k] / 6];
-    }
-    return -1;
-  }
+  int FindUndetermined(double max_standard_deviation);
 
   // See PoseGraph::MarginalCovariances.
   std::vector<MotionMatrix> MarginalCovariances(const std::vector<int>& poses,
-                                                int threads) {
-    ceres::Covariance::Options options;
-    options.num_threads = threads;
-    ceres::Covariance covariance(options);
-    std::vector<std::pair<const double*, const double*>> wanted;
-    for (const int pose : poses) {
-      const double* x = x_[pose].data();
-      if (!IsConstant(pose)) wanted.emplace_back(x, x);
-    }
-    if (!wanted.empty() && !covariance.Compute(wanted, problem_.get())) {
-      return {};
-    }
-    std::vector<MotionMatrix> result;
-    for (const int pose : poses) {
-      RowMajorBlock block = RowMajorBlock::Zero();
-      const double* x = x_[pose].data();
-      if (!IsConstant(pose)) covariance.GetCovarianceBlock(x, x, block.data());
-      result.push_back(block);
-    }
-    return result;
-  }
+                                                int threads);
 
  private:
   bool IsConstant(int pose) const {

@@ -54,15 +54,21 @@ inline constexpr double kRounding = 2e-14;
 // H = D V diag(l) V^T D with some l = 0; D^2 is the diagonal of H, so units do
 // not matter. Where l > 0, J = diag(sqrt l) V^T D, r = diag(1/sqrt l) V^T D^-1
 // g. In the null space of H, g has no component and the rows are 0, so
-// ceres::Covariance sees the rank.
-template <int K, typename Residuals, typename Rows>
-void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
-  const Eigen::Matrix<double, K, 1> D = sums.hessian.diagonal().unaryExpr(
-      [](double square) { return square > 0.0 ? std::sqrt(square) : 1.0; });
-  const auto inverse = D.cwiseInverse().eval();
-  // One type for all K: this takes long to compile and is rarely needed.
-  const Factorable<12> scaled =
-      inverse.asDiagonal() * sums.hessian * inverse.asDiagonal();
+// ceres::Covariance sees the rank. Takes H[K][K], g[K], r[K] and J[K][K] of any
+// K, because the solver takes long to compile and is rarely needed.
+inline void FactorSingular(int K, const double* hessian, const double* gradient,
+                           double* r, double* J) {
+  double D[12];
+  Factorable<12> scaled(K, K);
+  for (int i = 0; i < K; ++i) {
+    const double square = hessian[i * K + i];
+    D[i] = square > 0.0 ? std::sqrt(square) : 1.0;
+  }
+  for (int i = 0; i < K; ++i) {
+    for (int k = 0; k < K; ++k) {
+      scaled(i, k) = hessian[i * K + k] / (D[i] * D[k]);
+    }
+  }
   const Eigen::SelfAdjointEigenSolver<Factorable<12>> eigen(scaled);
   const double smallest =
       kRounding * std::max(0.0, eigen.eigenvalues().maxCoeff());
@@ -71,9 +77,13 @@ void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
     if (!(value > smallest)) continue;
     const double root = std::sqrt(value);
     const int row = K - 1 - i;  // the weakest is last
-    const Eigen::Matrix<double, K, 1> direction = eigen.eigenvectors().col(i);
-    J.row(row) = root * direction.cwiseProduct(D).transpose();
-    r[row] = direction.dot(inverse.cwiseProduct(sums.gradient)) / root;
+    double along = 0.0;         // the gradient's part in this direction
+    for (int k = 0; k < K; ++k) {
+      const double direction = eigen.eigenvectors()(k, i);
+      J[row * K + k] = root * direction * D[k];
+      along += direction / D[k] * gradient[k];
+    }
+    r[row] = along / root;
   }
 }
 
@@ -103,8 +113,8 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
     r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
     J.template topRows<K>() = cholesky.matrixU();
   } else {
-    compressed::FactorSingular<K>(sums, r.template head<K>(),
-                                  J.template topRows<K>());
+    compressed::FactorSingular(K, sums.hessian.data(), sums.gradient.data(),
+                               residuals, jacobian);
   }
   const double rest = 2.0 * sums.cost - r.template head<K>().squaredNorm();
   r[K] = std::sqrt(std::max(0.0, rest));
