@@ -37,7 +37,8 @@ class LandmarkBlock final
     : public ceres::SizedCostFunction<Residual::kRows, 6, 6, 1,
                                       kCalibrationSize> {
  public:
-  // All must outlive the block.
+  // All must outlive the block. Blocks that share a pose are not thread-safe:
+  // its derivatives are computed once for all of them.
   LandmarkBlock(const LinearizationPoint& anchor,
                 const LinearizationPoint& view, const CalibrationOrigin& origin,
                 const LandmarkData& data)
@@ -46,15 +47,17 @@ class LandmarkBlock final
   bool Evaluate(double const* const* x, double* residuals,
                 double** jacobians) const override {
     const CalibrationVector theta = origin_.At(x[3]);
+    const MotionDerivatives& anchor = anchor_.CachedDerivativesAt(x[0]);
+    const MotionDerivatives& view = view_.CachedDerivativesAt(x[1]);
     if (jacobians == nullptr) {
-      Residual::Residual(anchor_.PoseAt(x[0]), view_.PoseAt(x[1]), x[2][0],
-                         theta.data(), data_, residuals);
+      Residual::template Residual<double>(anchor, view, x[2][0], theta.data(),
+                                          data_, residuals);
       return true;
     }
     constexpr int kRows = Residual::kRows;
     LandmarkDerivatives<kRows> J;
-    Residual::Jacobian(anchor_.DerivativesAt(x[0]), view_.DerivativesAt(x[1]),
-                       x[2][0], theta.data(), data_, residuals, &J);
+    Residual::Jacobian(anchor, view, x[2][0], theta.data(), data_, residuals,
+                       &J);
     // All are stored row by row, as Ceres needs them.
     const auto give = [&](int block, const auto& derivatives) {
       if (jacobians[block] == nullptr) return;

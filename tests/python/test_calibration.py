@@ -47,7 +47,7 @@ def test_finds_what_is_wrong(calibration):
 
 def test_keeps_what_is_fixed(recording, wrong):
     fixed = rgbd_pose.calibrate(
-        recording, wrong, groundtruth="none", fix="focal", max_views=5000
+        recording, wrong, groundtruth="none", fix="focal", max_views=1000
     )
     assert fixed.parameters["fx"].status == "fixed"
     assert fixed.camera.fx == 535.5
@@ -81,7 +81,7 @@ import os, signal, threading, time, rgbd_pose
 def calibrate():
     begun = time.process_time()
     try:
-        rgbd_pose.calibrate({str(recording)!r}, max_views=5000)
+        rgbd_pose.calibrate({str(recording)!r}, max_views=1000)
     except KeyboardInterrupt:
         print("interrupted")
     return time.process_time() - begun
