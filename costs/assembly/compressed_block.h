@@ -58,17 +58,12 @@ inline constexpr double kRounding = 2e-14;
 // K, because the solver takes long to compile and is rarely needed.
 inline void FactorSingular(int K, const double* hessian, const double* gradient,
                            double* r, double* J) {
+  Factorable<12> scaled = Eigen::Map<const Factorable<12>>(hessian, K, K);
   double D[12];
-  Factorable<12> scaled(K, K);
   for (int i = 0; i < K; ++i) {
-    const double square = hessian[i * K + i];
-    D[i] = square > 0.0 ? std::sqrt(square) : 1.0;
+    D[i] = scaled(i, i) > 0.0 ? std::sqrt(scaled(i, i)) : 1.0;
   }
-  for (int i = 0; i < K; ++i) {
-    for (int k = 0; k < K; ++k) {
-      scaled(i, k) = hessian[i * K + k] / (D[i] * D[k]);
-    }
-  }
+  for (int i = 0; i < K * K; ++i) scaled(i) /= D[i / K] * D[i % K];
   const Eigen::SelfAdjointEigenSolver<Factorable<12>> eigen(scaled);
   const double smallest =
       kRounding * std::max(0.0, eigen.eigenvalues().maxCoeff());
