@@ -39,10 +39,7 @@ std::vector<MeshMakerType> MeshMakerTypes() {
     void Add(const Frame& frame, const Rigid3d& world_from_cam) override {
       fusion_.Add(frame, world_from_cam);
     }
-    TriangleMesh Mesh() override {
-      std::printf("kept %.1f MB\n", fusion_.MemoryBytes() / 1e6);
-      return fusion_.Mesh();
-    }
+    TriangleMesh Mesh() override { return fusion_.Mesh(); }
 
    private:
     MeshFusion fusion_;

@@ -74,9 +74,7 @@ std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
     }
     const std::string pattern = (base / words[0]).lexically_normal().string();
     const std::vector<std::string> folders = MatchingFolders(pattern);
-    if (folders.empty()) {
-      throw InputError(place + "no such folder: " + pattern);
-    }
+    if (folders.empty()) throw InputError(place + "no such folder: " + pattern);
     for (const std::string& match : folders) {
       // "folder/" has an empty last component.
       const fs::path folder = fs::path(match + "/").parent_path();

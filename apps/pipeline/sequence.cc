@@ -18,9 +18,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   options.path = settings.dataset;
   options.keep_color = keep_color;
   options.associations_file = settings.associations;
-  if (!settings.topics.empty()) {
-    options.topics = SplitList(settings.topics);
-  }
+  if (!settings.topics.empty()) options.topics = SplitList(settings.topics);
   options.depth_scale = settings.depth_scale;
   if (!settings.camera.empty()) {
     options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);

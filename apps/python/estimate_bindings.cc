@@ -290,9 +290,7 @@ void BindFunction(py::module_* module, const char* name,
     const RowMatches matches =
         MakeMatches(seen_by, to_observation, prev, cur, normals, sigma_px,
                     settings.features.depth.noise);
-    if (guess != nullptr) {
-      start = guess->find(matches.matches).value_or(start);
-    }
+    if (guess != nullptr) start = guess->find(matches.matches).value_or(start);
     return MakeResult(estimator.Estimate(matches.matches, start,
                                          prior.has_value() ? &*prior : nullptr),
                       matches, prev.size());

@@ -198,9 +198,7 @@ void Warn(const std::vector<std::string>& lines) {
 }
 
 void RequireFlag(const std::string& name, const std::string& value) {
-  if (value.empty()) {
-    throw UsageError("--" + name + " is needed; see --help");
-  }
+  if (value.empty()) throw UsageError("--" + name + " is needed; see --help");
 }
 
 int AvailableCores() {

@@ -41,9 +41,7 @@ LiveView::LiveView(const std::string& title, const ViewSettings& settings,
       run_(run),
       map_(run.slam()) {
   const int port = settings.view_port;
-  if (!(speed_ >= 0.0)) {
-    throw InputError("view_speed must not be negative");
-  }
+  if (!(speed_ >= 0.0)) throw InputError("view_speed must not be negative");
   if (port < 0 || port > 65535) {
     throw InputError("view_port must be 0 (any free port) to 65535");
   }

@@ -81,9 +81,7 @@ std::vector<int> FindInliers(const std::vector<PointMatch>& matches,
   for (size_t i = 0; i < matches.size(); ++i) {
     const double distance =
         matches[i].SquaredDistance(rotation, cur_from_prev.translation);
-    if (distance <= kMaxSquaredDistance) {
-      inliers.push_back(static_cast<int>(i));
-    }
+    if (distance <= kMaxSquaredDistance) inliers.push_back(static_cast<int>(i));
   }
   return inliers;
 }

@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -146,9 +145,7 @@ std::vector<MotionMatrix> GraphProblem::MarginalCovariances(
     const double* x = x_[pose].data();
     if (!IsConstant(pose)) wanted.emplace_back(x, x);
   }
-  if (!wanted.empty() && !covariance.Compute(wanted, problem_.get())) {
-    return {};
-  }
+  if (!wanted.empty() && !covariance.Compute(wanted, problem_.get())) return {};
   std::vector<MotionMatrix> result;
   for (const int pose : poses) {
     RowMajorBlock block = RowMajorBlock::Zero();

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <vector>
 
 #include "core/geometry/motion.h"
 #include "costs/calibration/calibration_parameters.h"

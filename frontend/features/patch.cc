@@ -126,9 +126,7 @@ struct AlignKernel {
             std::abs(v - start_v) <= kMaxShiftPx)) {
         return;
       }
-      if (step_u * step_u + step_v * step_v < min_step_px * min_step_px) {
-        break;
-      }
+      if (step_u * step_u + step_v * step_v < min_step_px * min_step_px) break;
     }
     const float energy = sums.squares - sums.grey * sums.grey / Patch::kPixels;
     const float explained = sums.contrast * sums.contrast * patch.energy;

@@ -46,11 +46,6 @@ class MeshFusion {
   // The surface so far.
   TriangleMesh Mesh() const;
 
-  // Memory used by the volume, bytes.
-  size_t MemoryBytes() const {
-    return volume_.size() * sizeof(TsdfVolume::Block);
-  }
-
  private:
   // Parameters that depend on a depth.
   struct DepthUse {

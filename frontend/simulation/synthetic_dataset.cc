@@ -183,9 +183,7 @@ Renderer MakeRenderer(const SyntheticOptions& options, const Camera& camera,
   for (int i = 0; i < options.walking_boxes; ++i) {
     movers.push_back(MakeWalkingBox(i, options.seed));
   }
-  if (options.moving_patch > 0.0) {
-    movers.push_back(MovingPatch(options, path));
-  }
+  if (options.moving_patch > 0.0) movers.push_back(MovingPatch(options, path));
   return Renderer(MakeScene(options.scene, options.seed), camera, movers);
 }
 
@@ -242,9 +240,7 @@ Frame SyntheticDataset::Read(int index) const {
   const double t = Time(index);
   Rendering rendering = Render(t);
   const double from_middle = t - Time(options_.frames - 1) / 2.0;
-  if (std::abs(from_middle) < options_.black_s / 2.0) {
-    rendering.color.setTo(0);
-  }
+  if (std::abs(from_middle) < options_.black_s / 2.0) rendering.color.setTo(0);
   if (options_.noise) {
     // One key per image. An image uses fewer than 2^40 numbers from its key on.
     const uint64_t sequence = HashCounter(options_.seed);

@@ -174,9 +174,7 @@ double MarkMoving(const FeatureSet& reference, bool missing_contradict,
   for (size_t i = 0; missing_contradict && i < is_found.size(); ++i) {
     if (is_found[i]) continue;
     const auto pixel = SeenAt(camera, cur_from_ref, reference.observations[i]);
-    if (pixel.has_value() && camera.Contains(*pixel)) {
-      vote(*pixel, -kMissing);
-    }
+    if (pixel.has_value() && camera.Contains(*pixel)) vote(*pixel, -kMissing);
   }
   tracked->moving.columns = columns;
   tracked->moving.cells.clear();

@@ -35,6 +35,12 @@ constexpr double kSigmaUnknownTime = 5e-3;
 // much (m per rad): a part of the displacement of objects in a room.
 constexpr double kShiftOfTurn = 0.5;
 
+// Neighbouring features err alike where the motion is a compromise between
+// those of two parts of the view. Cameras differ in how much they do so anyway:
+// a frame is compared with what nine tenths of the frames before stayed below.
+constexpr double kMaxInflation = 4.0;
+constexpr double kInflationUp = 1.05, kInflationDown = 0.995;  // by each frame
+
 }  // namespace
 
 std::string OdometryOptions::Check() const {
@@ -130,6 +136,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     result.status = TrackingStatus::kDegraded;
     result.reason = "not yet reconnected to the previous segment";
   }
+  if (result.reference >= 0) JudgeInflation(&result);
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
     last_ = {result.index,
@@ -141,6 +148,18 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     last_covariance_ = covariance_;
   }
   return result;
+}
+
+void Odometry::JudgeInflation(TrackedFrame* result) {
+  const double inflation = attempts_.kept().covariance_factor;
+  if (result->status == TrackingStatus::kOk &&
+      inflation > kMaxInflation * usual_inflation_) {
+    result->status = TrackingStatus::kDegraded;
+    result->reason =
+        "neighbouring features err alike: parts of the view may move apart";
+  }
+  usual_inflation_ *=
+      inflation > usual_inflation_ ? kInflationUp : kInflationDown;
 }
 
 MotionMatrix Odometry::TimingCovariance(const Frame& frame,

@@ -137,6 +137,9 @@ class Odometry {
 
   // Covariance of the motion due to the uncertain capture time at `twist`.
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
+
+  // Doubts a frame whose covariance was inflated far more than usual.
+  void JudgeInflation(TrackedFrame* result);
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
   bool Follow(const PreparedFrame& frame,
@@ -216,6 +219,7 @@ class Odometry {
     double left_at = 0.0;  // time stamp of the first new frame, s
   };
   std::optional<EarlierSegment> earlier_segment_;
+  double usual_inflation_ = 4.0;  // 90 % quantile of the covariance_factor
   bool is_lost_ = false;
   bool is_unconnected_ = false;  // the last frame started a segment
   bool is_predicted_ = false;    // see TrackedFrame

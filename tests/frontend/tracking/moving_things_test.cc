@@ -58,5 +58,14 @@ TEST(MovingThingsTest, PixelsDoNotOverruleFeatures) {
   }
 }
 
+// Before the poster has moved apart from the room, one motion fits both
+// halfway.
+TEST(MovingThingsTest, ACompromiseIsNotOk) {
+  const PatchRun run = TrackWithPatch("hybrid", 0.4, 4, 1e-2);
+  EXPECT_EQ(run.wrong, 0);
+  // Later, when only the room is followed, frames are ok again.
+  EXPECT_GE(TrackWithPatch("hybrid", 0.4, 12, 1e-2).ok, 6);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
