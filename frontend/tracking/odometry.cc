@@ -156,7 +156,8 @@ void Odometry::JudgeInflation(TrackedFrame* result) {
       inflation > kMaxInflation * usual_inflation_) {
     result->status = TrackingStatus::kDegraded;
     result->reason =
-        "neighbouring features err alike: parts of the view may move apart";
+        "neighbouring features err alike: something moves, or the shutter is "
+        "not known";
   }
   usual_inflation_ *=
       inflation > usual_inflation_ ? kInflationUp : kInflationDown;
