@@ -136,7 +136,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     result.status = TrackingStatus::kDegraded;
     result.reason = "not yet reconnected to the previous segment";
   }
-  if (result.reference >= 0) JudgeInflation(&result);
+  // With ignored shutters, all of a fast camera's frames err so.
+  if (options_.shutter == ShutterUse::kCamera && result.reference >= 0) {
+    JudgeInflation(&result);
+  }
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
     last_ = {result.index,
