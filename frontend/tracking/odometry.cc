@@ -137,9 +137,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     result.reason = "not yet reconnected to the previous segment";
   }
   // With ignored shutters, all of a fast camera's frames err so.
-  if (options_.shutter == ShutterUse::kCamera && result.reference >= 0) {
-    JudgeInflation(&result);
-  }
+  if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
     last_ = {result.index,
@@ -154,6 +152,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
 }
 
 void Odometry::JudgeInflation(TrackedFrame* result) {
+  // A failed attempt says nothing of the camera.
+  if (result->status == TrackingStatus::kLost || result->reference < 0) return;
   const double inflation = attempts_.kept().covariance_factor;
   if (result->status == TrackingStatus::kOk &&
       inflation > kMaxInflation * usual_inflation_) {
