@@ -54,8 +54,8 @@ inline constexpr double kRounding = 2e-14;
 // H = D V diag(l) V^T D with some l = 0; D^2 is the diagonal of H, so units do
 // not matter. Where l > 0, J = diag(sqrt l) V^T D, r = diag(1/sqrt l) V^T D^-1
 // g. In the null space of H, g has no component and the rows are 0, so
-// ceres::Covariance sees the rank. Takes H[K][K], g[K], r[K] and J[K][K] of any
-// K, because the solver takes long to compile and is rarely needed.
+// ceres::Covariance sees the rank. Takes H[K][K], g[K], r[K] and J[K][K]. Not a
+// template over K <= 12: the solver takes long to compile and is rarely needed.
 inline void FactorSingular(int K, const double* hessian, const double* gradient,
                            double* r, double* J) {
   Factorable<12> scaled = Eigen::Map<const Factorable<12>>(hessian, K, K);
