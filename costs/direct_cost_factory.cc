@@ -87,8 +87,8 @@ std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,
   names.emplace_back(MotionPriorCost::kName);
   return MakeRobustCosts(
       cost_names, loss_names, names, [&](const std::string& name) {
-        return name == MotionPriorCost::kName ? MakeCost(name)
-                                              : MakeDirectCost(name, options);
+        if (name == MotionPriorCost::kName) return MakeCost(name);
+        return MakeDirectCost(name, options);
       });
 }
 

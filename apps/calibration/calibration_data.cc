@@ -139,7 +139,7 @@ Twist TwistAt(const Trajectory& path, double time) {
   const bool is_even =
       std::abs(far / near - 2.0) < kEven &&
       std::max(lean(before, after), lean(first, last)) < kEven * near;
-  const Twist twist = difference(before, after, near);
+  Twist twist = difference(before, after, near);
   if (!is_even) return twist;
   return twist + (1.0 / 3.0) * (twist - difference(first, last, far));
 }

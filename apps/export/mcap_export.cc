@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 // Bytes after which a chunk is closed.
 constexpr size_t kMcapChunkSize = 1 << 20;
 
-constexpr std::string_view kNoText = "";  // no profile, codec or metadata
+constexpr std::string_view kNoText;  // no profile, codec or metadata
 constexpr uint32_t kNone = 0;             // attachments and the like
 
 // Serialises numbers in little-endian order, and texts (also lists and maps

@@ -167,7 +167,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
   const size_t size = source->timestamps().size();
   std::string ended_by;
   ProgressBar bar("tracking", static_cast<int>(size));
-  const std::string stopped =
+  std::string stopped =
       TrackAll(source, threads, {run}, [&](const Frame& frame) {
         if (run->frames().size() == 1) {
           Warn({source->camera().camera.SanityWarning(),

@@ -177,7 +177,7 @@ cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) == CV_8U) {
     throw Unreadable(name, image.encoding, "depth");
   }
-  const cv::Mat rows = PixelRows(image, *encoding, name);
+  cv::Mat rows = PixelRows(image, *encoding, name);
   if (encoding->type == CV_16UC1) return rows;
   cv::Mat depth(rows.size(), CV_16UC1);
   std::transform(rows.begin<float>(), rows.end<float>(),

@@ -112,7 +112,7 @@ cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
 
 cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
                         cv::Mat* color) {
-  const cv::Mat gray = Decode(bytes, path, /*to_gray=*/true, color);
+  cv::Mat gray = Decode(bytes, path, /*to_gray=*/true, color);
   if (gray.type() != CV_8UC1) {
     throw InputError(path +
                      ": a colour image must have 8 bits per channel, this one "
@@ -126,7 +126,7 @@ cv::Mat ReadDepthImageFile(const std::string& path) {
 }
 
 cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
-  const cv::Mat depth = Decode(bytes, path, /*to_gray=*/false);
+  cv::Mat depth = Decode(bytes, path, /*to_gray=*/false);
   if (depth.type() != CV_16UC1) {
     throw InputError(path +
                      ": a depth image must have 16 bits and 1 channel, "

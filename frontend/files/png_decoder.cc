@@ -207,7 +207,7 @@ bool ReadDepth(const PngImage& png, uint8_t* rows, cv::Mat* depth) {
 DecodedPng DecodePng(std::string_view bytes, PngUse use) {
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
   if (bytes.rfind(kSignature, 0) != 0) return {};
-  const DecodedPng damaged = {{}, {}, /*is_damaged=*/true};
+  DecodedPng damaged = {{}, {}, /*is_damaged=*/true};
   bytes.remove_prefix(kSignature.size());
   PngImage png;
   if (!ReadPngChunks(bytes, use, &png)) return damaged;

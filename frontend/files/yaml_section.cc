@@ -95,7 +95,7 @@ int YamlSection::Pixels(const std::string& key, double number) const {
 std::string YamlSection::Word(const std::string& key,
                               const std::vector<std::string>& known) const {
   if (!Has(key)) return known.front();
-  const std::string value = node_[key].Scalar();
+  std::string value = node_[key].Scalar();
   if (std::count(known.begin(), known.end(), value) > 0) return value;
   Fail(key, "'" + value + "' is not supported, only: " + Join(known));
 }

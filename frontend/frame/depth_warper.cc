@@ -62,7 +62,7 @@ const cv::Mat& DepthWarper::Move(const Frame& frame,
                                       kFlowBlock, kFlowBlock) &
                              image;
       const int measured_row = std::clamp(
-          static_cast<int>(std::lround(block.y + kFlowBlock / 2 + down)), 0,
+          block.y + kFlowBlock / 2 + static_cast<int>(std::lround(down)), 0,
           measured_.rows - 1);
       const Flow flow =
           FlowAt(static_cast<size_t>(row) * blocks_.columns + column,

@@ -119,7 +119,7 @@ std::string FormatGlb(const TriangleMesh& mesh) {
   AppendLittleEndian(uint32_t{2}, &bytes);  // version
   AppendLittleEndian(static_cast<uint32_t>(total), &bytes);
   AppendChunk("JSON", json, &bytes);
-  if (!binary.empty()) AppendChunk({"BIN", 4}, binary, &bytes);
+  if (!binary.empty()) AppendChunk({"BIN\0", 4}, binary, &bytes);
   return bytes;
 }
 

@@ -115,13 +115,12 @@ void FrameStream::ReadOne(Lock* lock) {
   }
   lock->lock();
   is_asking_ = false;
-  if (result.error != nullptr) {
-    ready_.emplace(index, std::move(result));
-  } else if (!next.has_value()) {
-    size_ = index;
-  }
   changed_.notify_all();
-  if (!next.has_value()) return;
+  if (!next.has_value()) {
+    if (result.error == nullptr) size_ = index;
+    if (result.error != nullptr) ready_.emplace(index, std::move(result));
+    return;
+  }
 
   lock->unlock();
   result.failed = Result::kRead;

@@ -42,7 +42,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
                        double weight) {
     Vector12 both;
     both << by_motion, by_velocity;
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(both, weight);
+    hessian.noalias() += both * (weight * both).transpose();
     right -= weight * residual * both;
   };
   for (size_t i = 0; i < matches.size(); ++i) {
@@ -82,7 +82,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     add(by_z, -seen * by_z - since * along_ray, z,
         Weight(z * z, spread * std::hypot(ref.sigma_depth, cur.sigma_depth)));
   }
-  hessian = hessian.selfadjointView<Eigen::Lower>();
+  hessian = hessian.selfadjointView<Eigen::Lower>();  // exactly symmetric
   // The motion has no prior; this only keeps the system solvable.
   hessian.diagonal().head<6>().array() += 1e-3;
   const Twist off = prior_mean - timing.twist;

@@ -51,7 +51,7 @@ ViewNews OneFrame(int index) {
 class ViewServerTest : public testing::Test {
  protected:
   static int PortOf(const ViewServer& server) {
-    const std::string address = server.address();
+    const std::string& address = server.address();
     return std::stoi(address.substr(address.rfind(':') + 1));
   }
 

@@ -52,7 +52,8 @@ class WallFrontend final : public Frontend {
  public:
   using Move = std::function<void(size_t feature, Observation* found)>;
 
-  explicit WallFrontend(Move move) : Frontend({kCamera}), move_(move) {}
+  explicit WallFrontend(Move move)
+      : Frontend({kCamera}), move_(std::move(move)) {}
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
     return std::make_unique<FeatureSet>(*FeatureWall().features);
   }
