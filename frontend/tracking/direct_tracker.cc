@@ -32,6 +32,9 @@ constexpr double kMaxSigmaTranslation = 0.01;  // m
 // spread wider, in sigmas. Right motions have 0.8, with blur 1.9; wrong 2 to 5.
 constexpr double kMaxSigmaOk = 2.0;
 
+// Beyond this (see CovarianceInflation), neighbouring features err alike.
+constexpr double kErrAlike = 2.0;
+
 // Returns the largest standard deviation in any direction of a covariance.
 double LargestSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
@@ -164,6 +167,9 @@ void DirectTracker::Estimate(const Reference& reference,
   if (by_features != nullptr) {
     pair.matches = &by_features->matches.matches;
     view.moving = &by_features->moving;
+    const bool are_alike = by_features->covariance_factor > kErrAlike;
+    // Costs on surfaces find none. Gray levels still refine the motion.
+    if (are_alike && !by_features->aligns_depth) view.depth = {};
   }
   pair.prior = &prior;
   pair.prev = reference.images();

@@ -108,6 +108,7 @@ void HybridTracker::Track(const Reference& reference,
     }
     return;
   }
+  tracked->aligns_depth = guess.aligns_depth;
   tracked->needs_refinement = is_clear && guess.leaves_refinement;
   if (tracked->needs_refinement) return;
   const bool is_refined = RefineByPixels(*ours.direct, frame, tracked);

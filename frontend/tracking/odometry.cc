@@ -1,11 +1,11 @@
 #include "frontend/tracking/odometry.h"
 
+#include <cmath>
 #include <utility>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
-#include "frontend/tracking/feature_tracker.h"
 
 namespace rgbd_pose {
 namespace {
@@ -30,6 +30,8 @@ constexpr double kSigmaLinear = 0.3;   // m/s
 // to 27 % of the ok frames are wrong by more than five sigmas, with it 1 %.
 constexpr double kSigmaKnownTime = 3e-5;
 constexpr double kSigmaUnknownTime = 5e-3;
+// If this time moves surfaces by more (m), depth may contradict gray levels.
+constexpr double kMaxShiftToAlign = 3.5e-3;
 
 // With wrong exposure times of rows, a turn looks like a translation by this
 // much (m per rad): a part of the displacement of objects in a room.
@@ -67,13 +69,6 @@ Odometry::Odometry(const OdometryOptions& options,
   RequireSound(options.Check(), "odometry: ");
 }
 
-Odometry::Odometry(const OdometryOptions& options,
-                   std::unique_ptr<Frontend> frontend, Estimator estimator,
-                   const TrackerOptions& tracker_options)
-    : Odometry(options, std::make_unique<FeatureTracker>(std::move(frontend),
-                                                         std::move(estimator),
-                                                         tracker_options)) {}
-
 TrackedFrame Odometry::Track(const Frame& frame,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
@@ -107,6 +102,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   has_shutter_ = HasShutter(frame);
   twist_.reset();
   twist_covariance_.setZero();
+  aligns_depth_ = std::sqrt(timing_covariance_(5, 5)) < kMaxShiftToAlign;
   if (has_shutter_) {
     twist_covariance_ = MotionCovarianceOfTwist(frame.Timing(Twist()),
                                                 kSigmaAngular, kSigmaLinear);
@@ -245,6 +241,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
       TrackingGuess guess = cur_from_ref;
       guess.velocity = velocity;
       guess.leaves_refinement = is_provisional;
+      guess.aligns_depth = aligns_depth_;
       return guess;
     };
     if (found != nullptr &&

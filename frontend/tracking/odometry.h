@@ -67,10 +67,6 @@ class Odometry {
   // Throws InputError for invalid options (see Check).
   Odometry(const OdometryOptions& options, std::unique_ptr<Tracker> tracker);
 
-  // Tracks with a FeatureTracker.
-  Odometry(const OdometryOptions& options, std::unique_ptr<Frontend> frontend,
-           Estimator estimator, const TrackerOptions& tracker_options = {});
-
   // `cur_from_prev_guess`: the motion since the previous frame from another
   // source (wheels, an inertial sensor). It is tried first and believed only if
   // the images agree; while tracking is lost, the pose follows it. Its
@@ -199,6 +195,7 @@ class Odometry {
   std::optional<Twist> twist_;                             // see last_twist
   MotionMatrix twist_covariance_ = MotionMatrix::Zero();   // see TrackingResult
   MotionMatrix timing_covariance_ = MotionMatrix::Zero();  // of capture time
+  bool aligns_depth_ = true;                               // see TrackingGuess
   OdometryKeyframe* reference_ = nullptr;                  // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame

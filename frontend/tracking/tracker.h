@@ -90,6 +90,10 @@ struct TrackingGuess {
   // The refinement of a pose that needs no confirmation may be left to
   // Tracker::Refine, as it may not be needed (see needs_refinement).
   bool leaves_refinement = false;
+
+  // Whether the camera is so slow, or its times are so well known, that depth
+  // and gray levels are of the same moment: see DirectTracker.
+  bool aligns_depth = true;
 };
 
 // Returns what a guess says about a motion, with the covariance of the guess or
@@ -148,6 +152,7 @@ struct TrackingResult {
 
   // What the guess says about the motion (feature trackers only).
   MotionPrior prior;
+  bool aligns_depth = true;
 
   // Whether Tracker::Refine has still to refine the pose.
   bool needs_refinement = false;

@@ -11,6 +11,7 @@
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/feature_tracker.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
@@ -75,9 +76,8 @@ class MatchedViews {
   // Moves the frontend into an odometry. `max_error`: of the last position, m.
   void ExpectTracksAlongItsAxes(double max_error) {
     Odometry odometry(
-        OdometryOptions(), std::move(frontend_),
-        Estimator(EstimatorOptions(),
-                  MakeRobustCosts("bidirectional_point", "tukey")));
+        {}, std::make_unique<FeatureTracker>(std::move(frontend_),
+                                             Estimator({}, MakeRobustCosts())));
     constexpr int kLast = 19;
     Rigid3d end;
     for (int i = 0; i <= kLast; ++i) {

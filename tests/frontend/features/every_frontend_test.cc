@@ -10,6 +10,7 @@
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/feature_tracker.h"
 #include "frontend/tracking/odometry.h"
 #include "tests/support/matched_views.h"
 
@@ -79,9 +80,10 @@ TEST_P(EveryFrontendTest, KeepsNothingOfTheCallersImages) {
   frontend.camera = camera.camera().camera;
   std::vector<Odometry> odometries;  // one gets new frames, one reused ones
   for (int i = 0; i < 2; ++i) {
-    odometries.emplace_back(OdometryOptions(),
-                            MakeFrontend(GetParam(), frontend),
-                            Estimator({}, MakeRobustCosts()));
+    odometries.emplace_back(
+        OdometryOptions(),
+        std::make_unique<FeatureTracker>(MakeFrontend(GetParam(), frontend),
+                                         Estimator({}, MakeRobustCosts())));
   }
   int references = 0;
   Frame reused;

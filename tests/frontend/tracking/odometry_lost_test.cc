@@ -265,8 +265,10 @@ TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
   const SyntheticDataset turned(options);
   FrontendOptions frontend{here.camera().camera};
   frontend.depth.max_depth = 100.0;
-  Odometry odometry({}, MakeFrontend("patch", frontend),
-                    {{}, MakeRobustCosts()});
+  Odometry odometry(
+      {},
+      MakeTracker("features",
+                  {{}, frontend, "patch", Estimator({}, MakeRobustCosts())}));
   const auto larger = [](Frame frame) {
     frame.depth_scale /= 10.0;
     return frame;

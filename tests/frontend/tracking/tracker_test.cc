@@ -14,6 +14,7 @@
 #include "frontend/tracking/odometry.h"
 #include "frontend/tracking/tracker_factory.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/shutter_sequence.h"
 #include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
@@ -374,6 +375,44 @@ TEST(HybridTrackerTest, ARefinementThatIsLeftCanBeMadeLater) {
   EXPECT_FALSE(later.needs_refinement);
   EXPECT_EQ(later.estimate.covariance, at_once.estimate.covariance);
   EXPECT_EQ(later.estimate.iterations, at_once.estimate.iterations);
+}
+
+// Returns the motion between two frames, refined by pixels under `cost`.
+Rigid3d RefinedMotion(const std::string& cost, const Camera& camera,
+                      const Frame& before, const Frame& after,
+                      const TrackingGuess& guess) {
+  TrackerParts parts = PartsFor(camera);
+  parts.direct_estimators->refining = Estimator(
+      DirectEstimatorOptions(),
+      JoinCosts(MakeRobustCosts(), MakeDirectCosts(cost, kDefaultDirectLoss)));
+  const auto tracker = MakeTracker("hybrid", std::move(parts));
+  std::string why_not;
+  const auto reference =
+      tracker->MakeReference(PreparedFrame(before), nullptr, nullptr, &why_not);
+  TrackingResult tracked(camera);
+  tracker->Track(*reference, PreparedFrame(after), guess, &tracked);
+  EXPECT_EQ(tracked.source, TrackingSource::kBoth);
+  return tracked.estimate.cur_from_prev;
+}
+
+TEST(HybridTrackerTest, DepthOfAnotherMomentIsNotAligned) {
+  const auto refine = [](const std::string& cost, const Shutters& shutters,
+                         bool aligns_depth) {
+    const SyntheticDataset room(ShutterOptions("handheld", shutters));
+    TrackingGuess guess =
+        room.WorldFromCam(34).Inverse() * room.WorldFromCam(30);
+    guess.aligns_depth = aligns_depth;
+    return RefinedMotion(cost, room.camera().camera, room.Read(30),
+                         room.Read(34), guess)
+        .translation;
+  };
+  const Shutters rolling = RollingShutters(1.0);
+  const Eigen::Vector3d by_gray = refine("photometric", rolling, true);
+  EXPECT_EQ(refine(kDefaultDirectCost, rolling, false), by_gray);
+  EXPECT_NE(refine(kDefaultDirectCost, rolling, true), by_gray);
+  // Unless neighbouring features err alike, depth is aligned.
+  EXPECT_EQ(refine(kDefaultDirectCost, {}, false),
+            refine(kDefaultDirectCost, {}, true));
 }
 
 TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
