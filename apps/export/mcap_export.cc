@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 constexpr size_t kMcapChunkSize = 1 << 20;
 
 constexpr std::string_view kNoText;  // no profile, codec or metadata
-constexpr uint32_t kNone = 0;             // attachments and the like
+constexpr uint32_t kNone = 0;        // attachments and the like
 
 // Serialises numbers in little-endian order, and texts (also lists and maps
 // that are serialised already) after their length.
