@@ -30,8 +30,6 @@ constexpr double kSigmaLinear = 0.3;   // m/s
 // to 27 % of the ok frames are wrong by more than five sigmas, with it 1 %.
 constexpr double kSigmaKnownTime = 3e-5;
 constexpr double kSigmaUnknownTime = 5e-3;
-// If this time moves surfaces by more (m), depth may contradict gray levels.
-constexpr double kMaxShiftToAlign = 3.5e-3;
 
 // With wrong exposure times of rows, a turn looks like a translation by this
 // much (m per rad): a part of the displacement of objects in a room.
@@ -50,6 +48,7 @@ std::string OdometryOptions::Check() const {
     return "min_reference_share must not be above 1";
   }
   if (!(max_flow_px > 0.0)) return "max_flow_px must be positive";
+  if (!(max_time_shift > 0.0)) return "max_time_shift must be positive";
   if (!(new_segment_after >= 0.0)) {
     return "new_segment_after must not be negative";
   }
@@ -102,7 +101,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   has_shutter_ = HasShutter(frame);
   twist_.reset();
   twist_covariance_.setZero();
-  aligns_depth_ = std::sqrt(timing_covariance_(5, 5)) < kMaxShiftToAlign;
+  aligns_depth_ = std::sqrt(timing_covariance_(5, 5)) < options_.max_time_shift;
   if (has_shutter_) {
     twist_covariance_ = MotionCovarianceOfTwist(frame.Timing(Twist()),
                                                 kSigmaAngular, kSigmaLinear);

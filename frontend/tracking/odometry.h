@@ -47,6 +47,8 @@ struct OdometryOptions {
 
   // How the exposure times of rows and of depth are used.
   ShutterUse shutter = ShutterUse::kCamera;
+  // If unknown times move surfaces by more, see TrackingGuess::aligns_depth.
+  double max_time_shift = 3.5e-3;  // m
 
   // How long (s) the previous segment is searched for after a new one starts.
   double new_segment_after = 1.5;

@@ -20,7 +20,8 @@ namespace {
 TEST(OdometryOptionsTest, NoFieldMayBeNan) {
   for (double OdometryOptions::*field :
        {&OdometryOptions::min_reference_share, &OdometryOptions::max_flow_px,
-        &OdometryOptions::new_segment_after}) {
+        &OdometryOptions::new_segment_after,
+        &OdometryOptions::max_time_shift}) {
     OdometryOptions options;
     options.*field = std::nan("");
     EXPECT_THROW(MakeOdometry(Camera(), "tukey", options), InputError);
