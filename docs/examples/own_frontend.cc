@@ -5,6 +5,7 @@
 #include "rgbd_pose/costs/cost_factory.h"
 #include "rgbd_pose/frontend/features/point_frontend.h"
 #include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/frontend/tracking/feature_tracker.h"
 #include "rgbd_pose/frontend/tracking/odometry.h"
 
 struct Flow final : rgbd_pose::PointFrontend {
@@ -22,8 +23,10 @@ struct Flow final : rgbd_pose::PointFrontend {
 int main() {
   const rgbd_pose::SyntheticDataset room({"room", "pan_tilt", 60});  // or yours
   const rgbd_pose::FrontendOptions options{room.camera().camera};
-  rgbd_pose::Odometry odometry({}, std::make_unique<Flow>(options),
-                               {{}, rgbd_pose::MakeRobustCosts()});
+  rgbd_pose::Odometry odometry(
+      {}, std::make_unique<rgbd_pose::FeatureTracker>(
+              std::make_unique<Flow>(options),
+              rgbd_pose::Estimator({}, rgbd_pose::MakeRobustCosts())));
   for (int i = 0; i < room.size(); ++i) odometry.Track(room.Read(i));
   std::printf("error %.4f m\n", odometry.WorldFromCam().translation.norm());
 }
