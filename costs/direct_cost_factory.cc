@@ -85,12 +85,11 @@ std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,
                                         const DirectOptions& options) {
   std::vector<std::string> names = DirectCostNames();
   names.emplace_back(MotionPriorCost::kName);
-  return MakeRobustCosts(cost_names, loss_names, names,
-                         [&](const std::string& name) {
-                           if (name == MotionPriorCost::kName)
-                             return MakeCost(name);
-                           return MakeDirectCost(name, options);
-                         });
+  const auto make = [&](const std::string& name) {
+    if (name == MotionPriorCost::kName) return MakeCost(name);
+    return MakeDirectCost(name, options);
+  };
+  return MakeRobustCosts(cost_names, loss_names, names, make);
 }
 
 }  // namespace rgbd_pose

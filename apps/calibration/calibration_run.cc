@@ -77,7 +77,7 @@ std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
 OdometrySettings CalibrationOdometry() {
   OdometrySettings settings;
   settings.odometry.max_flow_px = 30.0;
-  settings.odometry.max_time_shift = 1.0;  // m: no limit
+  settings.odometry.max_time_shift = 1.0;  // m: depth is always aligned
   settings.features.max_features = 300;
   return settings;
 }
@@ -109,7 +109,7 @@ RecordingCalibration CalibrateRecording(
   SequenceSettings part = sequence;
   OdometrySettings with_shutter = odometry;
   with_shutter.odometry.shutter = ShutterUse::kCamera;
-  with_shutter.odometry.max_time_shift = 1.0;
+  with_shutter.odometry.max_time_shift = 1.0;  // see CalibrationOdometry
   // The same for all cameras and passes: scatter is measured relative to it.
   DepthNoiseModel& noise = with_shutter.features.depth.noise;
   if (noise.name == "camera") {

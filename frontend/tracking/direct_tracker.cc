@@ -168,7 +168,7 @@ void DirectTracker::Estimate(const Reference& reference,
     pair.matches = &by_features->matches.matches;
     view.moving = &by_features->moving;
     const bool are_alike = by_features->covariance_factor > kErrAlike;
-    // Costs on surfaces find none. Gray levels still refine the motion.
+    // Without a depth image, only gray levels refine the motion.
     if (are_alike && !by_features->aligns_depth) view.depth = {};
   }
   pair.prior = &prior;

@@ -91,8 +91,8 @@ struct TrackingGuess {
   // Tracker::Refine, as it may not be needed (see needs_refinement).
   bool leaves_refinement = false;
 
-  // Whether the camera is so slow, or its times are so well known, that depth
-  // and gray levels are of the same moment: see DirectTracker.
+  // Whether depth and gray levels are of one moment: times are known, or the
+  // camera is slow. If not, depth is not aligned where neighbours err alike.
   bool aligns_depth = true;
 };
 

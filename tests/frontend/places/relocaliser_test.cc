@@ -25,7 +25,7 @@ constexpr double kMaxRotationError = 1.0 * kRadiansPerDegree;
 // Frames of the simulated room from any camera pose.
 class FurnishedRoom {
  public:
-  // NOLINTNEXTLINE(*UninitializedObject): the scene's seed is not lost.
+  // NOLINTNEXTLINE(*UninitializedObject): the scene's seed has a default.
   explicit FurnishedRoom(uint32_t seed)
       : seed_(seed), renderer_(MakeScene("room", seed), camera_.camera) {}
 
