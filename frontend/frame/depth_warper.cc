@@ -61,9 +61,9 @@ const cv::Mat& DepthWarper::Move(const Frame& frame,
       const cv::Rect block = cv::Rect(column * kFlowBlock, row * kFlowBlock,
                                       kFlowBlock, kFlowBlock) &
                              image;
+      const int middle = block.y + kFlowBlock / 2;
       const int measured_row = std::clamp(
-          block.y + kFlowBlock / 2 + static_cast<int>(std::lround(down)), 0,
-          measured_.rows - 1);
+          static_cast<int>(std::lround(middle + down)), 0, measured_.rows - 1);
       const Flow flow =
           FlowAt(static_cast<size_t>(row) * blocks_.columns + column,
                  measured_from_moved_[measured_row]);
