@@ -112,6 +112,20 @@ void CheckFlags() {
   }
 }
 
+// Values of the lists are given to each run and would replace those of the
+// file.
+void CheckSettings() {
+  if (FLAGS_settings.empty()) return;
+  for (const TextLine& line : ReadTextTable(FLAGS_settings)) {
+    const std::string flag = SplitText(line.words[0], '=')[0];
+    for (const auto& [list, name, column, check] : BatchSettings()) {
+      if (flag != std::string("--") + name) continue;
+      throw InputError(FLAGS_settings, line.number,
+                       flag + " cannot be set for all runs; use --" + list);
+    }
+  }
+}
+
 bool IsToDo(const BatchRun& run, const BatchFolder& folder) {
   const std::optional<RunEnd> end = folder.ReadEnd(run);
   return !end || end->status != "ok";
@@ -208,6 +222,7 @@ int WriteSummary(const std::vector<BatchRun>& plan, const BatchFolder& folder,
 
 int Main() {
   CheckFlags();
+  CheckSettings();
   const BatchGrid grid = ParseGrid(
       {FLAGS_costs, FLAGS_losses, FLAGS_frontends, FLAGS_trackers, FLAGS_parts},
       FLAGS_repeats);

@@ -46,6 +46,7 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
     written = WriteTumSequence(&source, FLAGS_output, writer);
   }
   Warn(DroppedFrames(source, written.damaged));
+  Warn({written.remark});
   std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), written.frames,
               sequence.GroundTruth() == nullptr ? "" : ", with ground truth");
   if (!written.stopped.empty()) {

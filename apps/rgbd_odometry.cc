@@ -65,8 +65,7 @@ int Main(const RunSettings& settings, const ProgramInfo& info) {
   const int threads = NumThreads(FLAGS_threads);
 
   // Check the input before the work starts and before anything is written.
-  const bool keep_color = !settings.output.save_cloud.empty();
-  Sequence sequence = OpenSequence(settings.sequence, keep_color);
+  Sequence sequence = OpenSequence(settings.sequence);
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
   SequenceRun run(settings.odometry, sequence.source->camera(),

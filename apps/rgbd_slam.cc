@@ -97,7 +97,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
       Calibrate(settings, threads);
   const bool has_camera = found.has_value() && found->result.is_accepted;
   Sequence sequence =
-      OpenSequence(settings.sequence, !settings.output.save_cloud.empty(),
+      OpenSequence(settings.sequence, /*keep_color=*/false,
                    has_camera ? &found->result.camera : nullptr);
   Warn(sequence.remarks);
   if (!settings.save_map.empty()) RequireMapFolder(settings.save_map);

@@ -20,14 +20,14 @@ namespace {
 constexpr int kRows = 800;  // descriptors per keyframe
 constexpr int kViews = 60;
 
-// All descriptors of views along the simulated depot. Real ORB bits are neither
-// uniform nor independent.
+// All descriptors of views around the simulated tables. Real ORB bits are
+// neither uniform nor independent.
 const cv::Mat& Seen() {
   static const cv::Mat seen = [] {
     SyntheticOptions options;
-    options.scene = "depot";
-    options.path = "depot";
-    options.rate_hz = kViews / 500.0;
+    options.scene = "table";
+    options.path = "table";
+    options.rate_hz = kViews / 56.0;
     options.frames = kViews;
     options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
     const SyntheticDataset dataset(options);

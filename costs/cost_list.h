@@ -20,7 +20,6 @@
 
 namespace rgbd_pose {
 
-// A list of residual types.
 template <typename... Types>
 struct TypeList {};
 

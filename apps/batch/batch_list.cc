@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <regex>
 
 #include "apps/batch/batch_plan.h"
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/bags/bag_reader.h"
 
 namespace rgbd_pose {
 namespace {
@@ -16,8 +18,8 @@ namespace fs = std::filesystem;
 
 bool IsRecording(const fs::path& path) {
   std::error_code error;
-  return fs::is_directory(path, error) || path.extension() == ".bag" ||
-         path.extension() == ".db3" || path.extension() == ".mcap";
+  return fs::is_directory(path, error) || IsBag(path, BagKind::kRos1) ||
+         IsBag(path, BagKind::kRos2);
 }
 
 // The folders and bags that match a pattern, sorted.
@@ -52,7 +54,10 @@ std::string CameraOf(const fs::path& folder, const std::string& named,
                                       : (base / named).lexically_normal();
   if (IsFile(file)) return file.string();
   // Other kinds of recordings contain the camera, or their run fails.
-  if (named.empty() && !IsFile(folder / "rgb.txt")) return "";
+  if (named.empty() &&
+      (!IsFile(folder / "rgb.txt") || IsFile(folder / "calibration.txt"))) {
+    return "";
+  }
   throw InputError(place + "no camera: " + file.string() +
                    " is not a file; give one in the second column, a YAML "
                    "file or one of " +
@@ -63,6 +68,8 @@ std::string CameraOf(const fs::path& folder, const std::string& named,
 
 std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
   const fs::path base = fs::absolute(path).parent_path();
+  const std::string literal = std::regex_replace(
+      (base / "").string(), std::regex(R"([*?[\\])"), R"(\$&)");
   std::vector<BatchSequence> sequences;
   std::map<std::string, int> lines;  // by sequence name
   for (const auto& [number, words] : ReadTextTable(path)) {
@@ -72,13 +79,16 @@ std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
                        "needs one or two columns (folder camera), has " +
                        std::to_string(words.size()));
     }
-    const std::string pattern = (base / words[0]).lexically_normal().string();
+    const std::string pattern =
+        fs::path(words[0]).is_absolute() ? words[0] : literal + words[0];
     const std::vector<std::string> folders = MatchingFolders(pattern);
-    if (folders.empty()) throw InputError(place + "no such folder: " + pattern);
+    if (folders.empty())
+      throw InputError(place + "no such folder: " + words[0]);
     for (const std::string& match : folders) {
       // "folder/" has an empty last component.
-      const fs::path folder = fs::path(match + "/").parent_path();
-      const std::string name = folder.lexically_normal().filename().string();
+      const fs::path folder =
+          fs::path(match + "/").lexically_normal().parent_path();
+      const std::string name = folder.filename().string();
       if (!IsUsableName(name)) {
         throw InputError(place + "'" + name +
                          "' is not a valid name (leading dot, comma, "

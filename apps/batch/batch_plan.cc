@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -105,10 +106,10 @@ void AddAllOf(const fs::path& recording, TextHash* hash) {
     hash->Add(file.lexically_relative(recording).string());
     const auto size = fs::file_size(file, error);
     hash->Add(error ? "none" : std::to_string(size));
-    const std::string type = file.extension().string();
-    if (type == ".txt" || type == ".json" || type == ".log") {
-      AddFile(file, hash);
-    }
+    // All but images and bags.
+    static const std::set<std::string> kTexts = {
+        ".txt", ".json", ".log", ".csv", ".yaml", ".yml", ".freiburg"};
+    if (kTexts.count(file.extension()) > 0) AddFile(file, hash);
   }
 }
 

@@ -6,7 +6,6 @@
 
 namespace rgbd_pose {
 
-// A sequence of a batch.
 struct BatchSequence {
   std::string name;    // folder name in the output; unique in a list
   std::string folder;  // absolute
@@ -44,7 +43,6 @@ struct BatchSetting {
 
 const std::vector<BatchSetting>& BatchSettings();
 
-// One run of the odometry.
 struct BatchRun {
   BatchSequence sequence;
   std::vector<std::string> values;  // of BatchSettings(), in their order

@@ -93,6 +93,8 @@ pid_t StartProcess(std::vector<std::string> command,
 
 void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
               const BatchPoolOptions& options) {
+  // Where it is ignored, ended runs cannot be waited for.
+  std::signal(SIGCHLD, SIG_DFL);
   std::vector<Process> processes;
   auto next = runs.begin();
   while (next != runs.end() || !processes.empty()) {

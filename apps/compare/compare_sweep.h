@@ -54,7 +54,6 @@ inline double SweepShare(int i) { return i * 0.1; }
 std::vector<SweepCell> CellsOf(const std::vector<SweepCell>& cells,
                                const SweepMethod& method);
 
-// The losses of a sweep in order.
 std::vector<std::string> LossesOf(const std::vector<SweepCell>& cells);
 
 // sweep.csv: a header and one row per cell.

@@ -15,7 +15,6 @@ void PrepareOutput(const std::string& folder);
 void WriteOutput(const std::string& folder, const std::string& file,
                  const std::string& content);
 
-// The settings of an experiment.
 struct ExperimentSettings {
   // Pixels would hide the effect of M-estimators on wrong matches.
   ExperimentSettings() { odometry.tracker = "features"; }

@@ -27,7 +27,6 @@ struct MotionError {
   double translation_mm = 0.0;
 };
 
-// The errors of all methods on the matches of one seed.
 std::vector<MotionError> RunSeed(int seed, double outlier_share,
                                  const std::vector<SweepMethod>& methods,
                                  std::vector<Estimator>* estimators) {

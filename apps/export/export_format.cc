@@ -80,7 +80,7 @@ ExportedViews WriteViewImages(const FinishedRun& run,
 
 OutputFolder::OutputFolder(const std::string& path,
                            const std::set<std::string>& entries, bool overwrite)
-    : path_(fs::absolute(path).lexically_normal()) {
+    : path_(fs::weakly_canonical(path)) {
   if (!path_.has_filename()) path_ = path_.parent_path();
   staging_dir_ = path_.string() + ".partial";
   std::error_code error;

@@ -76,7 +76,6 @@ std::string ExportNerfstudio(const FinishedRun& run,
                              const ExportOptions& options);
 std::string ExportMcap(const FinishedRun& run, const ExportOptions& options);
 
-// Surfaces.
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
 

@@ -16,31 +16,36 @@
 namespace rgbd_pose {
 namespace {
 
-// Adds the mesh to the page of the run, if there is one that can be written.
-void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
-              size_t frames, const ExportOptions& options) {
+TriangleMesh ThinMesh(const TriangleMesh& mesh, double voxel) {
   TriangleMesh thin = mesh;
   for (int most = kMaxPreviewTriangles;
        thin.triangles.size() > kMaxPreviewTriangles ||
        thin.vertices.size() > kMaxPreviewVertices;
        most = most * 3 / 4) {
-    thin = SimplifyMesh(mesh, static_cast<float>(options.voxel), most);
+    thin = SimplifyMesh(mesh, static_cast<float>(voxel), most);
   }
-  nlohmann::json preview = MeshPreview(thin);
+  return thin;
+}
+
+// Adds a cloud or mesh to the page of the run, if there is one that can be
+// written. `all`: the number of points or triangles before thinning.
+void ShowInPage(const std::string& folder, const char* file,
+                nlohmann::json preview, size_t all, size_t frames,
+                const ExportOptions& options) {
   preview["file"] = options.output;
-  preview["all_triangles"] = mesh.triangles.size();
+  preview["all"] = all;
   preview["frames"] = frames;
   const std::filesystem::path path(folder);
   try {
     WriteFileAtomically(
-        path / kMeshPreviewFile,
+        path / file,
         preview.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     if (HasReportLibrary() && std::filesystem::exists(path / "report.html")) {
       WriteReport("run", folder);
     }
   } catch (const InputError& error) {
-    LOG(WARNING) << "the page of the run does not show the mesh: "
-                 << error.what();
+    LOG(WARNING) << "the page of the run does not show " << options.output
+                 << ": " << error.what();
   }
 }
 
@@ -55,8 +60,11 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
     cloud.Add(frame, run.trajectory[view].world_from_cam);
   });
   WritePly(options.output, cloud.cloud().Points());
-  return Format("%d points of %d frames in %s\n", cloud.cloud().size(),
-                cloud.frames(), options.output.c_str());
+  ShowInPage(run.folder, kCloudPreviewFile,
+             CloudPreview(cloud.cloud().Thin(kMaxPreviewPoints)),
+             cloud.cloud().size(), cloud.frames(), options);
+  return Format("cloud       %d points of %d frames in %s\n",
+                cloud.cloud().size(), cloud.frames(), options.output.c_str());
 }
 
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
@@ -72,7 +80,9 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
       });
   const TriangleMesh mesh = fusion.Mesh();
   WriteMesh(options.output, mesh);
-  ShowMesh(run.folder, mesh, views.size(), options);
+  ShowInPage(run.folder, kMeshPreviewFile,
+             MeshPreview(ThinMesh(mesh, options.voxel)), mesh.triangles.size(),
+             views.size(), options);
   return Format("mesh        %zu triangles of %zu frames in %s\n",
                 mesh.triangles.size(), views.size(), options.output.c_str());
 }

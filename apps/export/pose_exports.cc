@@ -25,7 +25,7 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
   }
   for (const RelativePose& edge : ReadEdges(run.folder)) {
     if (posed.count(edge.ref) != 0 && posed.count(edge.cur) != 0) {
-      graph.edges.push_back(edge);
+      graph.edges.push_back({edge});
     }
   }
   return graph;

@@ -4,7 +4,6 @@
 
 namespace rgbd_pose {
 
-// The range of values of an axis.
 struct AxisRange {
   double low = 0.0;
   double high = 1.0;

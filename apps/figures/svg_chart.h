@@ -56,7 +56,6 @@ struct Chart {
 // Escapes a text for an element of SVG or HTML.
 std::string EscapeMarkup(const std::string& text);
 
-// Formats the chart as an SVG 1.1 file.
 std::string FormatSvg(const Chart& chart);
 
 }  // namespace rgbd_pose

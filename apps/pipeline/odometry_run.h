@@ -44,7 +44,6 @@ struct RunInputs {
   double max_damaged = 0.05;
 };
 
-// The results of a run.
 struct RunResults {
   std::vector<TrackedFrame> frames;  // one per input frame, in order
   std::vector<std::string> damaged;  // input frames left out, and why

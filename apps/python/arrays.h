@@ -62,7 +62,6 @@ Rigid3d RigidFromArray(const pybind11::object& object, const std::string& name);
 using RowMajorMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Makes an array read-only.
 pybind11::array ReadOnly(pybind11::array array);
 
 // A read-only copy of a small matrix.
@@ -110,7 +109,6 @@ auto PropertiesOf(Class* type) {
   };
 }
 
-// A path from a string or a path-like object.
 std::string PathFrom(const pybind11::object& path);
 
 // A trajectory from the path of a TUM text file, or from a pair of timestamps

@@ -29,7 +29,6 @@ class PickledBytes {
  public:
   PickledBytes() = default;  // for writing
 
-  // For reading.
   explicit PickledBytes(std::string bytes)
       : bytes_(std::move(bytes)), is_reading_(true) {}
 

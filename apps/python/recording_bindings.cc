@@ -61,7 +61,6 @@ class Recording {
 
   const FrameSource& source() const { return *source_; }
 
-  // The source at its start.
   std::shared_ptr<FrameSource> Begin() {
     if (is_used_) source_ = open_();
     is_used_ = true;

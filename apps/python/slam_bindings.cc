@@ -114,7 +114,8 @@ class SharedSlam : public SharedRun {
 
   std::vector<RelativePose> Edges() {
     const auto lock = LockFinished("edges");
-    return run_.slam()->Map().edges;
+    const std::vector<MapEdge> edges = run_.slam()->Map().edges;
+    return std::vector<RelativePose>(edges.begin(), edges.end());
   }
 
   void Save(const std::string& folder) {

@@ -64,7 +64,6 @@ class SharedRun {
   std::unique_ptr<LiveView> view_;  // null: no page
 };
 
-// A tracker's live page for Python.
 struct LivePage {
   SharedRun* tracker = nullptr;
   std::string address;

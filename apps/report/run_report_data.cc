@@ -215,14 +215,10 @@ json RunReportData(const std::string& run_folder) {
                      file("trajectory.txt"), thinning);
   }
   data["loss"] = LossCurve(data, file("metrics.json"));
-  // An older file in the folder may belong to another run.
-  if (data["metrics"].contains("cloud") &&
-      std::filesystem::exists(folder / kCloudPreviewFile)) {
-    data["cloud"] = ParseJson(file(kCloudPreviewFile));
-  }
-  // Written last, by the program that made the mesh; a new run removes it.
-  if (std::filesystem::exists(folder / kMeshPreviewFile)) {
-    data["mesh"] = ParseJson(file(kMeshPreviewFile));
+  // Written last, by the program that made cloud or mesh; a new run removes it.
+  for (const char* name : {kCloudPreviewFile, kMeshPreviewFile}) {
+    if (!std::filesystem::exists(folder / name)) continue;
+    data[name == kMeshPreviewFile ? "mesh" : "cloud"] = ParseJson(file(name));
   }
   return data;
 }

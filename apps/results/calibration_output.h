@@ -20,7 +20,6 @@ std::string FormatCalibrationSummary(const CalibrationResult& result);
 // Formats the result for metrics.json and the report.
 nlohmann::json CalibrationToJson(const CalibrationResult& result);
 
-// The status of a parameter in words.
 const char* ToString(CalibratedParameter::Status status);
 
 }  // namespace rgbd_pose

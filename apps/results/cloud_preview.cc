@@ -8,13 +8,12 @@
 
 namespace rgbd_pose {
 
-nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
-                            const Rigid3d& shown_from_world) {
+nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points) {
   std::vector<Eigen::Vector3d> positions;
   Eigen::AlignedBox3d box;
   std::string position_bytes, color_bytes;
   for (const ColoredPoint& point : points) {
-    positions.push_back(shown_from_world * point.position.cast<double>());
+    positions.emplace_back(point.position.cast<double>());
     box.extend(positions.back());
     color_bytes.append(point.color.begin(), point.color.end());
   }
@@ -37,7 +36,7 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
 }
 
 nlohmann::json MeshPreview(const TriangleMesh& mesh) {
-  nlohmann::json preview = CloudPreview(mesh.vertices, Rigid3d());
+  nlohmann::json preview = CloudPreview(mesh.vertices);
   std::string corners;
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     for (const int vertex : triangle) {

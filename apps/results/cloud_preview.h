@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "core/geometry/rigid3.h"
 #include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
@@ -17,11 +16,10 @@ constexpr int kMaxPreviewVertices = 65535;
 constexpr char kCloudPreviewFile[] = "cloud_preview.json";
 constexpr char kMeshPreviewFile[] = "mesh_preview.json";
 
-// Returns points for the page of a run, transformed by `shown_from_world`.
-// `positions` has x, y, z in multiples of `step_m` from `origin_m` (16 bits,
-// low byte first), `colors` red, green, blue (8 bits), both in base64.
-nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
-                            const Rigid3d& shown_from_world);
+// Returns points for the page of a run. `positions` has x, y, z in multiples of
+// `step_m` from `origin_m` (16 bits, low byte first), `colors` red, green, blue
+// (8 bits), both in base64.
+nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points);
 
 // The same for the vertices of a mesh, with the number of `triangles` and their
 // vertex indices, `corners` (16 bits, low byte first), in base64.

@@ -47,7 +47,6 @@ json ToJson(const Rigid3d& pose) {
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-// The columns of a table of errors.
 using Columns = std::vector<double ErrorStatistics::*>;
 const Columns kOverall = {&ErrorStatistics::rmse, &ErrorStatistics::median,
                           &ErrorStatistics::mean, &ErrorStatistics::max};

@@ -125,11 +125,12 @@ std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder) {
 }
 
 std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
-                            const Trajectory& truth,
+                            const Trajectory& path, const Trajectory& truth,
                             const EvaluationReport& report) {
   std::string text =
       "timestamp,true_x,true_y,true_z,x,y,z,position_error_m,rpe_m,rpe_deg\n";
   const std::vector<double> times = TimesOf(truth);
+  auto pose = path.begin();
   auto error = report.poses.begin();
   for (const TrackedFrame& frame : frames) {
     // NaN stands for an unknown value.
@@ -141,7 +142,7 @@ std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
     }
     if (frame.status != TrackingStatus::kLost) {
       cells.segment<3>(3) =
-          report.truth_from_estimate * frame.world_from_cam.translation;
+          report.truth_from_estimate * (pose++)->world_from_cam.translation;
       if (error != report.poses.end() && error->timestamp == frame.timestamp) {
         cells[6] = error->position;
         cells[7] = error->rpe_translation.value_or(NAN);

@@ -35,10 +35,11 @@ std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder);
 
 // errors.csv: one row per input frame; unknown values are empty cells. The true
 // position nearest in time (m), the estimated one after alignment, and the
-// errors of `report`, which must compare these frames with this truth: of the
-// position, and of the motion over the interval that starts there.
+// errors of `report`, which must compare `path`, the poses of all frames that
+// are not lost, with this truth: of the position, and of the motion over the
+// interval that starts there.
 std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
-                            const Trajectory& truth,
+                            const Trajectory& path, const Trajectory& truth,
                             const EvaluationReport& report);
 
 }  // namespace rgbd_pose

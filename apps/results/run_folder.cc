@@ -97,7 +97,8 @@ void RunFolder::Publish() {
          {kLast, "report.html", "errors.csv", "trajectory.txt", "frames.csv",
           "edges.csv", "config.flags", "cloud_preview.json",
           "mesh_preview.json", "slam.csv", "keyframes.csv", "graph.g2o",
-          "trajectory_online.txt", "trajectory_odometry.txt"}) {
+          "trajectory_online.txt", "trajectory_odometry.txt",
+          "calibration.html", "depth_noise.yaml"}) {
       fs::remove(path_ / name);
     }
     RemoveDebugImages(path_ / "debug");

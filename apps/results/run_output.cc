@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/run_summary.h"
@@ -13,6 +12,7 @@
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/fusion/mesh_file.h"
+#include "frontend/fusion/mesh_fusion.h"
 #include "frontend/tracking/tracking_pictures.h"
 
 namespace rgbd_pose {
@@ -27,16 +27,6 @@ nlohmann::json ShutterToJson(const RgbdCamera& camera) {
   };
   return {{"color", both(camera.color_shutter)},
           {"depth", both(camera.depth_shutter)}};
-}
-
-// The cloud to fuse frames into, if it is requested. Checks --voxel anyway.
-std::optional<CloudFusion> MakeCloud(const RunOutputSettings& settings,
-                                     const Camera& camera,
-                                     const DepthLookupOptions& depth) {
-  const FusionOptions options = {camera, settings.voxel, depth};
-  RequireSound(options.Check(), "--voxel: ");
-  if (settings.save_cloud.empty()) return std::nullopt;
-  return CloudFusion(options);
 }
 
 void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
@@ -73,12 +63,10 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
        "as 10,20-40:5",
        &settings->debug_images},
       {"save_cloud", kGroup,
-       "file for a coloured point cloud (PLY) in the world frame of the "
-       "trajectory; empty: none",
-       &settings->save_cloud},
-      {"save_mesh", kGroup,
-       "file for a coloured mesh (.ply or .glb), fused with the final poses "
+       "file for a coloured point cloud (.ply), fused with the final poses "
        "after the run, which reads the frames again; empty: none",
+       &settings->save_cloud},
+      {"save_mesh", kGroup, "the same for a coloured mesh (.ply or .glb)",
        &settings->save_mesh},
       {"voxel", kGroup, "voxel size (m) of the cloud and the mesh",
        &settings->voxel},
@@ -87,33 +75,31 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
 
 RunOutput::RunOutput(const RunOutputSettings& settings,
                      const FrameSource& source, const DepthLookupOptions& depth)
-    : settings_(settings),
-      source_(source),
+    : source_(source),
       drawn_("debug_images", settings.debug_images),
-      cloud_(MakeCloud(settings, source.camera().camera, depth)),
       folder_(settings.output) {
+  const MeshFusionOptions fusion = {
+      {source.camera().camera, settings.voxel, depth}};
+  RequireSound(settings.save_mesh.empty() ? fusion.FusionOptions::Check()
+                                          : fusion.Check(),
+               "--voxel or --max_depth: ");
   if (!settings.debug_images.empty()) {
     std::filesystem::create_directory(folder_.staging_dir() / kDebug);
   }
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
-  if (cloud_.has_value()) RequireWritable(settings.save_cloud);
+  if (!settings.save_cloud.empty()) RequireWritable(settings.save_cloud);
 }
 
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   depth_stamps_ms_.push_back(1e3 * frame.depth_delay);
   const TrackedFrame& tracked = run.frames().back();
-  const bool is_drawn = drawn_.Contains(tracked.index);
-  const bool is_fused = cloud_.has_value() && cloud_->ShouldIntegrate(tracked);
-  if (!is_drawn && !is_fused) return;
+  if (!drawn_.Contains(tracked.index)) return;
   const Camera& camera = source_.camera().camera;
   Frame seen = frame;
   seen.twist = run.odometry().last_twist();
   seen = FrameRectifier(camera).Rectify(seen);
-  if (is_drawn) {
-    WriteDebugImage(folder_.staging_dir() / kDebug, seen, tracked, camera,
-                    run.odometry());
-  }
-  if (is_fused) cloud_->Add(seen, tracked.world_from_cam);
+  WriteDebugImage(folder_.staging_dir() / kDebug, seen, tracked, camera,
+                  run.odometry());
 }
 
 std::string RunOutput::Write(const RunResults& results, int threads,
@@ -154,7 +140,6 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                               {"weights_zero", residuals.weights_zero},
                               {"degrees_counts", residuals.degrees}}}};
   metrics.update(more);
-  Rigid3d shown_from_world;
   if (!results.no_evaluation.empty()) {
     Warn({"no evaluation: " + results.no_evaluation});
   }
@@ -162,22 +147,9 @@ std::string RunOutput::Write(const RunResults& results, int threads,
     Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
     text += FormatEvaluation(*results.evaluation);
     metrics["evaluation"] = EvaluationToJson(*results.evaluation);
-    shown_from_world = results.evaluation->truth_from_estimate;
-    folder_.WriteFile("errors.csv", FormatErrorsCsv(results.frames, *truth,
-                                                    *results.evaluation));
-  }
-  if (cloud_.has_value()) {
-    const VoxelCloud& cloud = cloud_->cloud();
-    WritePly(settings_.save_cloud, cloud.Points());
-    text += Format("cloud       %d points of %d frames in %s\n", cloud.size(),
-                   cloud_->frames(), settings_.save_cloud.c_str());
-    // In the world of the run's page.
-    folder_.WriteFile(
-        kCloudPreviewFile,
-        CloudPreview(cloud.Thin(kMaxPreviewPoints), shown_from_world).dump());
-    metrics["cloud"] = {{"points", cloud.size()},
-                        {"frames", cloud_->frames()},
-                        {"voxel_m", settings_.voxel}};
+    folder_.WriteFile("errors.csv",
+                      FormatErrorsCsv(results.frames, results.trajectory,
+                                      *truth, *results.evaluation));
   }
   folder_.WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
   folder_.WriteFile("frames.csv", FormatFramesCsv(results.frames));

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +8,7 @@
 #include "apps/pipeline/settings.h"
 #include "apps/results/run_folder.h"
 #include "apps/shell/program.h"
-#include "frontend/fusion/cloud_fusion.h"
+#include "frontend/frame/depth_lookup.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/frame_source.h"
 
@@ -26,12 +25,11 @@ struct RunOutputSettings {
 
 std::vector<Setting> SettingTable(RunOutputSettings* settings);
 
-// The output files of a run; images and the cloud are made as frames arrive.
+// The output files of a run; images are drawn as frames arrive.
 class RunOutput {
  public:
   // Creates the output folder before the run. Throws InputError if this fails
-  // or for invalid options. The source must outlive this object and keep
-  // colours if a cloud is requested.
+  // or for invalid options. The source must outlive this object.
   RunOutput(const RunOutputSettings& settings, const FrameSource& source,
             const DepthLookupOptions& depth);
 
@@ -51,10 +49,8 @@ class RunOutput {
                     const ProgramInfo& info, const nlohmann::json& more);
 
  private:
-  RunOutputSettings settings_;
   const FrameSource& source_;
   FrameSelection drawn_;
-  std::optional<CloudFusion> cloud_;
   RunFolder folder_;
   std::vector<double> depth_stamps_ms_;  // relative to colour, per frame
 };

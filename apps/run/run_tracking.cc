@@ -131,17 +131,17 @@ std::string WriteRunPage(const std::filesystem::path& staging_dir,
 }
 
 // Returns the exit code and prints one line on stderr unless it is kExitOk.
-// `stopped`: why the run ended early; `no_report`: why there is no page.
+// `stopped`: why the run ended early; `missing`: why a result is missing.
 int ExitCodeOf(const std::string& program, const RunResults& results,
                const std::string& folder, const std::string& stopped,
-               const std::string& no_report) {
+               const std::string& missing) {
   const auto end_with = [&](ExitCode code, const std::string& why) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), why.c_str());
     return code;
   };
-  if (!no_report.empty()) {
+  if (!missing.empty()) {
     return end_with(kExitBadInput,
-                    no_report + "; all other results are in " + folder);
+                    missing + "; all other results are in " + folder);
   }
   if (results.TrackedShare() < kMinTrackedShare) {
     return end_with(
@@ -191,11 +191,12 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   const int threads = NumThreads(FLAGS_threads);
   const std::string& dataset = settings.sequence.dataset;
   const std::string& folder = settings.output.output;
+  const std::string& cloud = settings.output.save_cloud;
   const std::string& mesh = settings.output.save_mesh;
-  if (!mesh.empty() && !std::filesystem::exists(dataset)) {
+  if (!(cloud + mesh).empty() && !std::filesystem::exists(dataset)) {
     throw InputError(
-        "--save_mesh: the mesh needs the frames a second time, but '" +
-        dataset +
+        std::string(mesh.empty() ? "--save_cloud" : "--save_mesh") +
+        " needs the frames a second time, but '" + dataset +
         "' is not a file or folder; record it with rgbd_convert first");
   }
   FrameSource& source = *sequence->source;
@@ -224,26 +225,32 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
     text += FormatSlamSummary(more["slam"]);
     WriteMapTables(*run, output.folder());
   }
-  std::string no_report;
+  std::string missing;
   if (FLAGS_report) {
-    text += WriteRunPage(output.folder().staging_dir(), folder, &no_report);
+    text += WriteRunPage(output.folder().staging_dir(), folder, &missing);
   }
   output.folder().Publish();
-  if (!mesh.empty()) {
-    ExportOptions options;
-    options.output = mesh;
-    options.voxel = settings.output.voxel;
-    options.threads = threads;
-    text += ExportMesh(FinishedRun(folder), options);
-  }
   // If the map cannot be saved, the results stay.
   if (!settings.save_map.empty()) {
     SaveMap(settings.save_map, slam->Map());
     text += "map in      " + settings.save_map + "\n";
   }
+  ExportOptions options;
+  options.voxel = settings.output.voxel;
+  options.threads = threads;
+  for (const auto& [file, fuse] :
+       {std::pair(cloud, ExportCloud), std::pair(mesh, ExportMesh)}) {
+    if (file.empty() || results.trajectory.empty()) continue;
+    options.output = file;
+    try {
+      text += fuse(FinishedRun(folder), options);
+    } catch (const InputError& error) {
+      missing = error.what();
+    }
+  }
   std::printf("%sresults in  %s\n", text.c_str(), folder.c_str());
   view.Finish(folder);
-  return ExitCodeOf(info.name, results, folder, stopped, no_report);
+  return ExitCodeOf(info.name, results, folder, stopped, missing);
 }
 
 }  // namespace rgbd_pose

@@ -13,7 +13,6 @@
 #include <exception>
 #include <opencv2/core.hpp>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 #include <thread>
 

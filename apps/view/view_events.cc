@@ -25,7 +25,6 @@ std::string Text(const std::string& text) {
                                    nlohmann::json::error_handler_t::replace);
 }
 
-// Formats the items in brackets, each with `format`.
 template <typename Items, typename FormatItem>
 std::string List(const Items& items, const FormatItem& format) {
   std::string text = "[";

@@ -87,7 +87,6 @@ class ViewState {
   int readers() const { return readers_; }
   void AddReaders(int more) { readers_ += more; }
 
-  // The buttons.
   void Pause(bool is_paused);
   void Stop();
   bool is_stopped() const;

@@ -30,7 +30,8 @@ struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
-  // The guess if not judged: too few matches, degenerate, or no usable step.
+  // The guess if there were too few matches or no usable step, or if
+  // degenerate.
   Rigid3d cur_from_prev;
 
   // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "core/geometry/motion.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {

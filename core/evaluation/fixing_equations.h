@@ -37,7 +37,6 @@ TruthFixing FixingAt(const FixingVector& x);
 std::vector<std::string> NameFixingDirections(
     const FixingDirections& directions);
 
-// A pose and its velocity.
 struct MovingPose {
   Rigid3d world_from_cam;
   Twist velocity;  // in the camera's own axes, rad/s and m/s

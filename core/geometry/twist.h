@@ -74,7 +74,7 @@ struct Shutter {
   double offset = 0.0;   // of the middle row, relative to the timestamp, s
   double readout = 0.0;  // s
 
-  // Whether they were given; if not, a usual shutter adds uncertainty.
+  // Whether they were given; if not, covariances allow for 5 ms of motion.
   bool is_known = false;
 
   // Whether all rows are exposed at the timestamp.

@@ -13,7 +13,6 @@ constexpr int kMaxCliqueMatches = 500;
 
 // Howard's greedy clique: matches join in the order of their degrees.
 std::vector<int> GreedyClique(const std::vector<PointMatch>& matches) {
-  // The matches that are consistent with each match.
   std::vector<std::bitset<kMaxCliqueMatches>> graph(matches.size());
   for (size_t i = 0; i < matches.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace rgbd_pose {
@@ -141,7 +142,7 @@ std::vector<MotionMatrix> GraphProblem::MarginalCovariances(
   options.num_threads = threads;
   ceres::Covariance covariance(options);
   std::vector<std::pair<const double*, const double*>> wanted;
-  for (const int pose : poses) {
+  for (const int pose : std::set<int>(poses.begin(), poses.end())) {
     const double* x = x_[pose].data();
     if (!IsConstant(pose)) wanted.emplace_back(x, x);
   }

@@ -195,8 +195,11 @@ std::vector<MotionMatrix> PoseGraph::MarginalCovariances(
 }
 
 double PoseGraph::OvercountingFactor() const {
-  const auto motions = static_cast<double>(num_poses() - 1);
-  const auto edges = static_cast<double>(graph_.edges.size());
+  double motions = 0.0, edges = 0.0;
+  for (const auto& pose : graph_.poses) motions += !pose.is_fixed;
+  for (const auto& edge : graph_.edges) {
+    edges += !graph_.IsIdle(edge.ref, edge.cur);
+  }
   return motions > 0.0 ? std::max(1.0, edges / motions) : 1.0;
 }
 

@@ -118,7 +118,7 @@ class PoseGraph {
       const std::vector<int>& poses) const;
 
   // How often information is counted, at most: the number of edges divided by
-  // that of motions between the poses (1 for a tree). Edges between frames that
+  // that of poses that are not fixed (1 for a tree). Edges between frames that
   // see the same features share noise: all k (k - 1) / 2 edges between k frames
   // contain no more information than k - 1. Independent edges count only once.
   double OvercountingFactor() const;

@@ -191,7 +191,6 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   // For poses that no landmark determines.
   known_before.diagonal().head(y_at).array() += 1e-9;
 
-  // The last columns of the inverse.
   Eigen::MatrixXd last;
   const auto invert = [&](double slope) {
     Eigen::MatrixXd H = slope * equations.hessian + known_before;

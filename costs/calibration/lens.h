@@ -42,7 +42,6 @@ struct CalibratedLens {
     return distorted;
   }
 
-  // The pixel of a distorted position.
   Pair ToPixel(const Pair& distorted) const {
     return {theta[kFx] * distorted[0] + theta[kCx],
             theta[kFy] * distorted[1] + theta[kCy]};
@@ -54,7 +53,6 @@ struct CalibratedLens {
   }
 };
 
-// d Distort / d (x, y).
 inline Eigen::Matrix2d DistortDerivative(const CalibratedLens<double>& at,
                                          double x, double y) {
   DistortedPoint<double> p;

@@ -32,7 +32,6 @@ struct PointTerm {
   D Jtr[3];  // n
 };
 
-// The sum of all lanes.
 template <typename D>
 double LaneSum(const D& lanes) {
   constexpr int kLanes = sizeof(D) / sizeof(double);

@@ -4,6 +4,7 @@
 
 #include "rgbd_pose/apps/pipeline/settings.h"
 #include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/frontend/sources/frame_assembly.h"
 
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours
@@ -18,6 +19,8 @@ int main() {
     cv::cvtColor(images.color, frame.gray, cv::COLOR_BGR2GRAY);
     frame.depth = images.depth;
     frame.depth_scale = 5000.0;  // units per metre
+    // The shutters and the depth errors of the camera, if its file states any.
+    frame = rgbd_pose::CorrectDepth(camera.camera(), frame);
     const rgbd_pose::TrackedFrame tracked = odometry.Track(frame);
     if (!tracked.reason.empty())
       std::printf("%d: %s\n", i, tracked.reason.c_str());

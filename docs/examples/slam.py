@@ -24,7 +24,8 @@ slam.save_map("map")
 again = rgbd_pose.Slam(camera)
 again.load_map("map", localise_only=True)
 for frame in frames:
-    found = again.track(frame.gray, frame.depth, frame.timestamp)
+    found = again.track(frame.gray, frame.depth, frame.timestamp,
+                        depth_delay=frame.depth_delay)
 again.finish()
 stamps, map_from_cam = again.trajectory
 print(np.round(map_from_cam[0, :3, 3], 2))  # prints [0. 0. 0.]

@@ -16,7 +16,6 @@
 
 namespace rgbd_pose {
 
-// A topic of a bag.
 struct BagTopic {
   std::string name;  // with the leading slash
   std::string type;  // in the form of ROS 1: sensor_msgs/Image
@@ -40,10 +39,8 @@ class BagReader {
 
   WireFormat format() const { return format_; }
 
-  // All topics of the bag.
   const std::vector<BagTopic>& topics() const { return topics_; }
 
-  // The topic of this name, or null.
   const BagTopic* FindTopic(const std::string& name) const {
     return FindNamed(topics_, name);
   }
@@ -84,7 +81,6 @@ class BagReader {
     names_[number] = name;
   }
 
-  // The numbers of topics in the file.
   std::set<int64_t> NumbersOf(const std::vector<std::string>& topics) const {
     std::set<int64_t> numbers;
     for (const auto& [number, name] : names_) {

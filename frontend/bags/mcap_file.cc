@@ -25,7 +25,6 @@ struct McapChannel {
   std::string type;      // name of the schema
 };
 
-// Channels by id.
 using McapChannels = std::map<uint16_t, McapChannel>;
 
 struct McapMessage {

@@ -30,7 +30,6 @@ enum class PngUse {
   kDepth,         // CV_16UC1
 };
 
-// Result of DecodePng.
 struct DecodedPng {
   cv::Mat image;            // gray or depth; empty: not decoded
   cv::Mat color;            // empty unless requested

@@ -22,14 +22,6 @@ CloudFusion::CloudFusion(const FusionOptions& options)
   }
 }
 
-bool CloudFusion::ShouldIntegrate(const TrackedFrame& tracked) const {
-  // Closer frames would cost time and add nothing new.
-  return tracked.status == TrackingStatus::kOk && tracked.segment == 0 &&
-         (!last_world_from_cam_.has_value() ||
-          MotionFilter().IsReached(last_world_from_cam_->Inverse() *
-                                   tracked.world_from_cam));
-}
-
 void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   const Eigen::Matrix3f rotation =
       world_from_cam.rotation.toRotationMatrix().cast<float>();
@@ -52,7 +44,6 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
           {rotation * (z * rays[x]) + translation, {bgr[2], bgr[1], bgr[0]}});
     }
   }
-  last_world_from_cam_ = world_from_cam;
   ++frames_;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,6 @@
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 #include "frontend/fusion/voxel_cloud.h"
-#include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
 
@@ -52,10 +50,6 @@ class CloudFusion {
   // The options must pass FusionOptions::Check.
   explicit CloudFusion(const FusionOptions& options);
 
-  // Whether Add would contribute anything new: the status is ok, the camera has
-  // moved, and the pose relative to the first frame is known (segment 0).
-  bool ShouldIntegrate(const TrackedFrame& tracked) const;
-
   // The frame must have colours.
   void Add(const Frame& frame, const Rigid3d& world_from_cam);
 
@@ -68,7 +62,6 @@ class CloudFusion {
   std::vector<Eigen::Vector3f> rays_;  // of all pixels at depth 1, row by row
   VoxelCloud cloud_;
   int frames_ = 0;
-  std::optional<Rigid3d> last_world_from_cam_;
 };
 
 }  // namespace rgbd_pose

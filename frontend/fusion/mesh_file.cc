@@ -97,7 +97,6 @@ std::string Json(const TriangleMesh& mesh, size_t binary_bytes) {
              mesh.vertices.size(), 3 * mesh.triangles.size());
 }
 
-// `type`: four bytes.
 void AppendChunk(const std::string& type, const std::string& content,
                  std::string* bytes) {
   AppendLittleEndian(static_cast<uint32_t>(content.size()), bytes);

@@ -11,7 +11,6 @@ namespace {
 constexpr int kSide = TsdfVolume::kSide;
 constexpr int kNone = -1;
 
-// The eight corners of a voxel.
 using Corners = std::array<DistanceVoxel, 8>;
 
 // The place of a corner; the highest bit of the index is x.

@@ -51,7 +51,6 @@ class TsdfVolume {
   uint64_t key(int index) const { return blocks_[index].first; }
   const Block& block(int index) const { return *blocks_[index].second; }
 
-  // The index of the block of a key, or -1.
   int Find(uint64_t key) const {
     const auto place = index_.find(key);
     return place == index_.end() ? -1 : place->second;

@@ -38,6 +38,9 @@ std::string KeyframeMap::Check() const {
     if (!IsMotion(keyframe.world_from_cam)) {
       return name + "the pose must be finite and its quaternion of unit length";
     }
+    if (!keyframe.timing_covariance.allFinite()) {
+      return name + "the timing covariance must be finite";
+    }
     const std::string wrong_images =
         keyframe.images.Check(camera.width, camera.height);
     if (!wrong_images.empty()) return name + wrong_images;

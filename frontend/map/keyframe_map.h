@@ -9,12 +9,17 @@
 
 namespace rgbd_pose {
 
+// A motion between two keyframes, named by id.
+struct MapEdge : RelativePose {
+  bool is_tracked = false;  // measured by the odometry, not by the mapper
+};
+
 // A map of a place: keyframes and the motions measured between them. Contains
 // everything needed for relocalisation, to extend the map and to correct it.
 struct KeyframeMap {
   Camera camera;                    // of all keyframes
   std::vector<Keyframe> keyframes;  // compressed, in any order
-  std::vector<RelativePose> edges;  // ref and cur are keyframe ids
+  std::vector<MapEdge> edges;       // in any order
 
   // A one-line description of an error, or empty: duplicate ids, images of
   // another size than the camera's, edges to missing keyframes, values that are

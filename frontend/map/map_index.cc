@@ -18,8 +18,10 @@ constexpr std::string_view kVersion = "1";
 constexpr char kColumns[] =
     "# camera width height fx fy cx cy k1 k2 p1 p2 k3 (k4 k5 k6 lens)\n"
     "# keyframe id segment timestamp depth_delay depth_scale tx ty tz qx qy "
-    "qz qw gray depth\n"
-    "# edge ref cur tx ty tz qx qy qz qw covariance (6 x 6)\n";
+    "qz qw gray depth (timing_covariance (6 x 6))\n"
+    "# edge ref cur tx ty tz qx qy qz qw covariance (6 x 6) (tracked)\n";
+
+constexpr char kTracked[] = "tracked";  // the last word of such an edge
 
 // Names of lens models.
 constexpr char kRational[] = "rational";
@@ -27,7 +29,6 @@ constexpr char kEquidistant[] = "equidistant";
 
 using Image = std::shared_ptr<const PngBytes>;
 
-// Writes the words of a line.
 struct LineWriter {
   std::string text;  // starts with the kind of the line
 
@@ -83,6 +84,11 @@ void PassMotion(Line* line, Rigid* motion) {
   for (int i = 0; i < 4; ++i) line->Number(&motion->rotation.coeffs()[i]);
 }
 
+template <typename Line, typename Matrix>
+void PassCovariance(Line* line, Matrix* covariance) {
+  for (int i = 0; i < 36; ++i) line->Number(&(*covariance)(i / 6, i % 6));
+}
+
 template <typename Line, typename Node>
 void PassKeyframe(Line* line, Node* keyframe) {
   line->Integer(&keyframe->id);
@@ -100,7 +106,7 @@ void PassEdge(Line* line, Edge* edge) {
   line->Integer(&edge->ref);
   line->Integer(&edge->cur);
   PassMotion(line, &edge->cur_from_ref);
-  for (int i = 0; i < 36; ++i) line->Number(&edge->covariance(i / 6, i % 6));
+  PassCovariance(line, &edge->covariance);
 }
 
 void ReadCamera(LineReader* line, Camera* camera) {
@@ -179,11 +185,13 @@ std::string FormatMapIndex(const KeyframeMap& map) {
   for (const Keyframe& keyframe : map.keyframes) {
     LineWriter line = {"keyframe"};
     PassKeyframe(&line, &keyframe);
+    PassCovariance(&line, &keyframe.timing_covariance);
     text += line.text + '\n';
   }
-  for (const RelativePose& edge : map.edges) {
+  for (const MapEdge& edge : map.edges) {
     LineWriter line = {"edge"};
     PassEdge(&line, &edge);
+    if (edge.is_tracked) line.Word(kTracked);
     text += line.text + '\n';
   }
   return text + ChecksumLine(text);
@@ -200,11 +208,16 @@ KeyframeMap ParseMapIndex(std::string_view text, const std::string& path) {
     if (line.Kind() == "camera") {
       ReadCamera(&line, &map.camera);
     } else if (line.Kind() == "keyframe") {
-      line.Require(15);
-      PassKeyframe(&line, &map.keyframes.emplace_back());
+      // Maps of earlier versions lack the last words of both.
+      if (line.Count() != 15) line.Require(15 + 36);
+      Keyframe& keyframe = map.keyframes.emplace_back();
+      PassKeyframe(&line, &keyframe);
+      if (line.Count() > 15) PassCovariance(&line, &keyframe.timing_covariance);
     } else if (line.Kind() == "edge") {
-      line.Require(46);
-      PassEdge(&line, &map.edges.emplace_back());
+      MapEdge& edge = map.edges.emplace_back();
+      edge.is_tracked = line.line.words.back() == kTracked;
+      line.Require(edge.is_tracked ? 47 : 46);
+      PassEdge(&line, &edge);
     } else {
       line.Fail("'" + line.Kind() + "' must be camera, keyframe or edge");
     }

@@ -150,7 +150,6 @@ bool KeyframeGraph::IsFixed(int at) const {
   return nodes_[at].is_held || first_of_.at(segment(at)) == at;
 }
 
-// A pose graph and the poses of keyframes in it.
 struct KeyframeGraph::Problem {
   PoseGraph graph;
   std::vector<int> pose_of;  // by keyframe; -1: none

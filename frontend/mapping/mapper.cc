@@ -65,11 +65,11 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
   for (const Keyframe& keyframe : map.keyframes) {
     Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }
-  for (const RelativePose& edge : map.edges) {
+  for (const MapEdge& edge : map.edges) {
     RelativePose numbered = edge;
     numbered.ref = numbers_.at(edge.ref);
     numbered.cur = numbers_.at(edge.cur);
-    graph_.AddPair(numbered, /*is_tracked=*/false);
+    graph_.AddPair(numbered, edge.is_tracked);
   }
 }
 
@@ -210,7 +210,7 @@ KeyframeMap Mapper::Map(bool as_solved) const {
     map.keyframes.back().world_from_cam = graph_.pose(at);
   }
   for (const KeyframePair& pair : graph_.pairs()) {
-    RelativePose edge = pair.edge;
+    MapEdge edge = {pair.edge, pair.is_tracked};
     edge.ref = keyframes_[pair.edge.ref].id;
     edge.cur = keyframes_[pair.edge.cur].id;
     if (as_solved) edge.covariance = graph_.CovarianceAsSolved(pair);

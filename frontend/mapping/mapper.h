@@ -117,7 +117,6 @@ class Mapper {
   // Compresses the images of a keyframe; returns its number in graph_.
   int AddKeyframe(Keyframe keyframe, const PreparedFrame& frame, bool is_held);
   void Index(int at);
-  // A keyframe with decompressed images.
   Keyframe WithImages(int at) const;
   void FindReturn(int newest, MapUpdate* update) const;
   void CullKeyframes(int newest);

@@ -217,20 +217,4 @@ Scene MakeTwinCorridors(uint32_t seed) {
   return scene;
 }
 
-Scene MakeDepot(uint32_t seed) {
-  constexpr double kReach = 7.5;   // half of a row's length
-  constexpr double kThick = 0.34;  // thickness of a row's back
-  Scene scene = {{}, {0.0, 0.0, 1000.0}, seed};
-  PutFurnishedRoom({kDepotPitch * kDepotAisles, 22.0}, &scene);
-  for (int i = 1; i < kDepotAisles; ++i) {
-    const double x = kDepotPitch * (i - kDepotAisles / 2.0);
-    AddBox({{x, 0.0, 0.0}, {kThick, 2 * kReach, 2.2}}, kWallpaper, &scene);
-    const double right = x + kThick / 2;
-    const double left = x - kThick / 2;
-    Furnish({right, kReach}, {right, -kReach}, 100 + i, &scene);
-    Furnish({left, -kReach}, {left, kReach}, 200 + i, &scene);
-  }
-  return scene;
-}
-
 }  // namespace rgbd_pose

@@ -5,7 +5,6 @@
 
 #include "core/util/named_values.h"
 #include "core/util/units.h"
-#include "frontend/simulation/synthetic_scene.h"
 
 namespace rgbd_pose {
 namespace {
@@ -241,16 +240,6 @@ Rigid3d Sway(double t) {
                  shift);
 }
 
-// Looks in the direction of the way's point `ahead` m further on, turned by
-// `yaw` (rad, to the left), with a descent of `drop` per metre.
-Rigid3d LookAhead(const Way& way, double s, double ahead, double yaw,
-                  double height, double drop) {
-  const Vector2d place = way.At(s);
-  const Vector2d look = (way.At(s + ahead) - place).normalized();
-  const Vector2d turned = Eigen::Rotation2Dd(yaw) * look;
-  return LookAt(Lift(place, height), Lift(place + turned, height - drop));
-}
-
 Rigid3d TableTour(double t, double /*duration*/) {
   static const Way way({{-3.1, -2.0}, {3.1, -2.0}, {3.1, 2.0}, {-3.1, 2.0}},
                        true);
@@ -277,9 +266,13 @@ Rigid3d TwoRoomsTour(double t, double /*duration*/) {
                         {-3.9, 1.4}},
                        true);
   constexpr double kRound = 57.0;  // s
-  const double look = 12.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * t / 9.5);
-  return LookAhead(way, way.length() * t / kRound, 2.4, look, 1.45, 0.25) *
-         Sway(t);
+  const double yaw = 12.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * t / 9.5);
+  const double s = way.length() * t / kRound;
+  const Vector2d place = way.At(s);
+  // To the way's point 2.4 m further on, and to both sides of it.
+  const Vector2d look =
+      Eigen::Rotation2Dd(yaw) * (way.At(s + 2.4) - place).normalized();
+  return LookAt(Lift(place, 1.45), Lift(place + look, 1.45 - 0.25)) * Sway(t);
 }
 
 // Looks left at the furniture: never sees the end of the corridor.
@@ -289,26 +282,6 @@ Rigid3d TwinCorridorsTour(double t, double /*duration*/) {
   const double share = 0.5 * (1.0 - std::cos(M_PI * t / kThere));
   const Vector2d place = way.At(0.5 * way.length() * share);
   return LookAt(Lift(place, 1.35), Lift(place + Vector2d(0.35, 1.0), 1.1)) *
-         Sway(t);
-}
-
-// Up one aisle, down the next, and along the wall back to the first.
-Rigid3d DepotTour(double t, double /*duration*/) {
-  static const Way way = [] {
-    std::vector<Vector2d> corners;
-    for (int aisle = 0; aisle < kDepotAisles; ++aisle) {
-      const double x = kDepotPitch * (aisle - (kDepotAisles - 1) / 2.0);
-      const double y = aisle % 2 == 0 ? -8.6 : 8.6;
-      corners.emplace_back(x, y);
-      corners.emplace_back(x, -y);
-    }
-    corners.emplace_back(corners.back().x(), -9.4);
-    corners.emplace_back(corners.front().x(), -9.4);
-    return Way(corners, true);
-  }();
-  constexpr double kRound = 500.0;  // s
-  return LookAhead(way, way.length() * t / kRound, 2.6,
-                   75.0 * kRadiansPerDegree, 1.35, 0.15) *
          Sway(t);
 }
 
@@ -322,8 +295,7 @@ constexpr Named<SyntheticPath> kPaths[] = {
     {"whip_pan", WhipPan},
     {"table", TableTour},
     {"two_rooms", TwoRoomsTour},
-    {"twin_corridors", TwinCorridorsTour},
-    {"depot", DepotTour}};
+    {"twin_corridors", TwinCorridorsTour}};
 
 }  // namespace
 

@@ -29,13 +29,12 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //             deg/s (0.96 and 87 reached within the first 5 s)
 //   whip_pan  along xyz, with half a turn to the left or back every 3 s: 0.5 s
 //             at 300 deg/s and 0.1 s each to start and to stop, first at 1.15 s
-// Carried by hand through the scene of the same name, at up to 0.6 m/s (depot
-// 0.8) and 40 deg/s:
+// Carried by hand through the scene of the same name, at up to 0.6 m/s
+// and 40 deg/s:
 //   table           19 m around the desks in 56 s, repeatedly
 //   two_rooms       22 m through both rooms and the door, and back, in 57 s,
 //                   repeatedly; looks in another direction on the way back
 //   twin_corridors  18 m through both in 55 s, and back in the next 55 s
-//   depot           313 m along all aisles and back to the start in 500 s
 SyntheticPath FindSyntheticPath(const std::string& name);
 
 // The names of all paths.

@@ -146,8 +146,7 @@ constexpr Named<Scene (*)(uint32_t seed)> kScenes[] = {
     {"poster_wall", MakePosterWall},
     {"table", MakeTableRoom},
     {"two_rooms", MakeTwoRooms},
-    {"twin_corridors", MakeTwinCorridors},
-    {"depot", MakeDepot}};
+    {"twin_corridors", MakeTwinCorridors}};
 
 }  // namespace
 

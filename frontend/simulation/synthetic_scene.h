@@ -61,7 +61,6 @@ inline void AddBox(const SceneBox& box, const Material& m, Scene* scene) {
 //   two_rooms       of 5.4 x 5.4 m, with a door of 1.2 m between them
 //   twin_corridors  2.4 m wide and 8 m long, a hall between them; the second is
 //                   kTwinShift further along x, with the same texture and light
-//   depot           42 x 22 m, rows of shelves along y and aisles between them
 Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.
@@ -69,11 +68,8 @@ std::vector<std::string> SceneNames();
 
 // The scenes for tours.
 constexpr double kTwinShift = 14.0;  // m
-constexpr int kDepotAisles = 14;
-constexpr double kDepotPitch = 3.0;  // m, between two aisles
 Scene MakeTableRoom(uint32_t seed);
 Scene MakeTwoRooms(uint32_t seed);
 Scene MakeTwinCorridors(uint32_t seed);
-Scene MakeDepot(uint32_t seed);
 
 }  // namespace rgbd_pose

@@ -116,7 +116,6 @@ constexpr float kGlyphHeight = 3.0f;
 
 float Clamp01(float x) { return std::min(std::max(x, 0.0f), 1.0f); }
 
-// One byte of a hash as -1..1.
 float Signed(uint32_t hash, int byte) {
   return static_cast<float>((hash >> (8 * byte)) & 0xffu) / 127.5f - 1.0f;
 }

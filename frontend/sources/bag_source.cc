@@ -78,6 +78,7 @@ class BagSource final : public FrameSource {
                       depth_.frame + "', that of colour '" + color_.frame +
                       "'");
     }
+    if (!damaged_transform_.empty()) lines.push_back(damaged_transform_);
     if (pairing_.same_stamp() > 0) {
       lines.push_back(SameStampRemark(bag_->path(), pairing_.same_stamp()));
     }
@@ -118,8 +119,13 @@ class BagSource final : public FrameSource {
     }
     try {
       Add(*message);
-    } catch (const InputError&) {
+    } catch (const InputError& error) {
+      if (message->topic != topics_.color && message->topic != topics_.depth) {
+        damaged_transform_ = error.what();
+        return true;
+      }
       damage_ = std::current_exception();
+      if (num_frames_ == 0) last_stamp_ = message->received;
     }
     return true;
   }
@@ -184,10 +190,11 @@ class BagSource final : public FrameSource {
   Stream color_;
   Stream depth_;
   int num_frames_ = 0;
-  double last_stamp_ = 0.0;    // of the last frame, s
-  std::exception_ptr damage_;  // error of the last message
-  std::exception_ptr error_;   // error of the bag
-  bool is_read_ = false;       // to its end
+  std::string damaged_transform_;  // error of the last damaged one
+  double last_stamp_ = 0.0;        // of the last frame, s
+  std::exception_ptr damage_;      // error of the last message
+  std::exception_ptr error_;       // error of the bag
+  bool is_read_ = false;           // to its end
   bool is_over_ = false;
 };
 

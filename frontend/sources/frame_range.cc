@@ -62,6 +62,11 @@ bool Parse(std::string_view text, FrameRange* range) {
   return true;
 }
 
+InputError NoneOf(size_t frames) {
+  return InputError("frames: the recording has only " + std::to_string(frames) +
+                    " frames, none of them in this range");
+}
+
 // The frames of another source that are in a range.
 class PartialSource final : public FrameSource {
  public:
@@ -74,6 +79,7 @@ class PartialSource final : public FrameSource {
       if (!next.has_value()) break;
       if (picker_.Takes(next->timestamp)) return next->WithIndex(num_taken_++);
     }
+    if (num_taken_ == 0 && picker_.number > 0) throw NoneOf(picker_.number);
     return std::nullopt;
   }
 
@@ -138,11 +144,7 @@ std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
                                     const FrameRange& range) {
   const size_t frames = whole->timestamps().size();
   auto part = std::make_unique<PartialSource>(std::move(whole), range);
-  if (frames > 0 && part->timestamps().empty()) {
-    throw InputError("frames: the recording has only " +
-                     std::to_string(frames) +
-                     " frames, none of them in this range");
-  }
+  if (frames > 0 && part->timestamps().empty()) throw NoneOf(frames);
   return part;
 }
 

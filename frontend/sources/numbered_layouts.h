@@ -18,7 +18,6 @@ struct NumberedFrame {
   std::string depth_path;
 };
 
-// A recording in numbered files.
 struct NumberedFolder {
   std::filesystem::path path;
   std::vector<NumberedFrame> frames;  // by number

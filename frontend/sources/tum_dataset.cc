@@ -44,7 +44,6 @@ ListedImage ImageIn(const TextLine& line, size_t column,
           (fs::path(folder) / line.words[column + 1]).string(), line.number};
 }
 
-// The lines of a list, each with `columns` words.
 std::vector<TextLine> ReadLines(const std::string& list, size_t columns,
                                 const std::string& wanted) {
   std::vector<TextLine> lines = ReadTextTable(list);

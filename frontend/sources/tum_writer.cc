@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <mutex>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <system_error>
+#include <utility>
 
+#include "core/evaluation/association.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -17,6 +20,8 @@ namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
+
+using StampPairs = std::vector<std::pair<double, double>>;  // colour, depth
 
 double DepthStamp(const Frame& frame) {
   return frame.timestamp + frame.depth_delay;
@@ -55,36 +60,70 @@ cv::Mat WithGrayOf(const Frame& frame) {
   return color;
 }
 
+std::string LineOf(const std::string& kind, double stamp) {
+  return FixedNumber(stamp, 6) + " " + ImagePath(kind, stamp);
+}
+
+// Writes the lists of images. If readers would pair them by time in another
+// way, also writes the pairs and returns what readers have to know.
+std::string WriteLists(const fs::path& folder, const StampPairs& pairs) {
+  std::set<double> color, depth;
+  std::string lines;
+  for (const auto& [of_color, of_depth] : pairs) {
+    color.insert(of_color);
+    depth.insert(of_depth);
+    lines += LineOf("rgb", of_color) + " " + LineOf("depth", of_depth) + "\n";
+  }
+  for (const auto& [kind, stamps] :
+       {std::pair("rgb", color), {"depth", depth}}) {
+    std::string text = "# timestamp filename\n";
+    for (const double stamp : stamps) text += LineOf(kind, stamp) + "\n";
+    WriteFileAtomically(folder / (std::string(kind) + ".txt"), text);
+  }
+  const std::vector<double> first(color.begin(), color.end());
+  const std::vector<double> second(depth.begin(), depth.end());
+  StampPairs by_time;
+  for (const auto& [i, k] :
+       Associate(first, second, SourceOptions().max_time_difference)) {
+    by_time.emplace_back(first[i], second[k]);
+  }
+  if (by_time == pairs) return "";
+  WriteFileAtomically(folder / "associations.txt", lines);
+  return "the pairs of images are not those nearest in time: read them with "
+         "--associations=FOLDER/associations.txt";
+}
+
 // The images are written by the threads that read them, the lists at the end.
 WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
                          const TumWriterOptions& options) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
-  FrameStream stream(
-      source,
-      [&folder](const Frame& frame) {
-        WritePng(folder / ImagePath("rgb", frame.timestamp),
-                 frame.color.empty() ? frame.gray : WithGrayOf(frame));
-        WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
-      },
-      std::max(1, options.threads), options.max_damaged);
-  const std::string head = "# timestamp filename\n";
-  std::map<std::string, std::string> lists = {{"rgb", head}, {"depth", head}};
-  const auto add = [&lists](const std::string& kind, double stamp) {
-    lists[kind] += FixedNumber(stamp, 6) + " " + ImagePath(kind, stamp) + "\n";
+  std::mutex mutex;
+  std::set<double> begun;  // stamps of depth images; frames may share one
+  const auto write = [&](const Frame& frame) {
+    WritePng(folder / ImagePath("rgb", frame.timestamp),
+             frame.color.empty() ? frame.gray : WithGrayOf(frame));
+    const double stamp = DepthStamp(frame);
+    {
+      const std::lock_guard lock(mutex);
+      if (!begun.insert(stamp).second) return;
+    }
+    WritePng(folder / ImagePath("depth", stamp), frame.depth);
   };
   WrittenSequence written;
-  while (const std::optional<StreamedFrame> next = stream.Next()) {
-    add("rgb", next->frame.timestamp);
-    add("depth", DepthStamp(next->frame));
-    ++written.frames;
-    if (options.progress) options.progress(written.frames);
+  StampPairs pairs;
+  {
+    FrameStream stream(source, write, std::max(1, options.threads),
+                       options.max_damaged);
+    while (const std::optional<StreamedFrame> next = stream.Next()) {
+      pairs.emplace_back(next->frame.timestamp, DepthStamp(next->frame));
+      ++written.frames;
+      if (options.progress) options.progress(written.frames);
+    }
+    written.damaged = stream.damaged();
+    written.stopped = stream.stopped();
   }
-  for (const auto& [kind, list] : lists) {
-    WriteFileAtomically((folder / (kind + ".txt")).string(), list);
-  }
-  written.damaged = stream.damaged();
-  written.stopped = stream.stopped();
+  written.remark = WriteLists(folder, pairs);
   const Trajectory ground_truth =
       options.ground_truth ? options.ground_truth() : source->ground_truth();
   if (!ground_truth.empty()) {
@@ -102,17 +141,18 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
 
 WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                                  const TumWriterOptions& options) {
-  fs::path target = fs::path(folder).lexically_normal();
-  if (!target.has_filename()) target = target.parent_path();  // "folder/"
-  fs::path partial = target;
-  partial += ".partial";
   try {
+    fs::path target = fs::weakly_canonical(folder);
+    if (!target.has_filename()) target = target.parent_path();  // "folder/"
+    fs::path partial = target;
+    partial += ".partial";
     if (fs::exists(target) &&
         (!fs::is_directory(target) || !fs::is_empty(target))) {
       throw InputError(folder +
                        ": already exists and is not an empty folder; remove it "
                        "or choose another");
     }
+    fs::remove(target);  // fails now and not at the end, such as a mount point
     fs::remove_all(partial);
     try {
       WrittenSequence written = WriteAll(source, partial, options);

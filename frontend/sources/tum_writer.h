@@ -27,6 +27,7 @@ struct WrittenSequence {
   int frames = 0;                    // written
   std::vector<std::string> damaged;  // FrameStream::damaged
   std::string stopped;               // FrameStream::stopped
+  std::string remark;                // what readers have to know; may be empty
 };
 
 // Writes all frames of a source in the layout of the TUM RGB-D benchmark (grey

@@ -46,7 +46,7 @@ class FeatureTracker final : public Tracker {
              const TrackingGuess& guess, TrackingResult* tracked) override {
     Track(reference, frame, guess.cur_from_ref, guess, tracked);
   }
-  // Starts from a better motion; the guess is only the mean of the prior.
+  // Searches for features at another motion; the solver starts at the guess.
   void Track(const Reference& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_start, const TrackingGuess& guess,
              TrackingResult* tracked);

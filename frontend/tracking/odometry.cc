@@ -92,8 +92,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   const double last_interval = interval_;
   interval_ = result.index > 0 ? frame.timestamp - timestamp_ : 0.0;
   // Across missing frames, the motion at constant velocity is longer.
-  if (last_interval > 0.0 && interval_ > kMissingFrames * last_interval &&
-      interval_ < kMaxMovedOn) {
+  if (last_interval > 0.0 && interval_ > 0.0 && interval_ < kMaxMovedOn &&
+      (interval_ > kMissingFrames * last_interval ||
+       last_interval > kMissingFrames * interval_)) {
     cur_from_prev_ =
         TwistOf(cur_from_prev_, last_interval).MotionDuring(interval_);
   }
@@ -148,7 +149,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
 
 void Odometry::JudgeInflation(TrackedFrame* result) {
   // A failed attempt says nothing of the camera.
-  if (result->status == TrackingStatus::kLost || result->reference < 0) return;
+  if (result->status == TrackingStatus::kLost || result->reference < 0 ||
+      result->source == TrackingSource::kDirect) {
+    return;
+  }
   const double inflation = attempts_.kept().covariance_factor;
   if (result->status == TrackingStatus::kOk &&
       inflation > kMaxInflation * usual_inflation_) {
@@ -157,8 +161,9 @@ void Odometry::JudgeInflation(TrackedFrame* result) {
         "neighbouring features err alike: something moves, or the shutter is "
         "not known";
   }
-  usual_inflation_ *=
+  const double change =
       inflation > usual_inflation_ ? kInflationUp : kInflationDown;
+  usual_inflation_ = std::max(1.0, change * usual_inflation_);
 }
 
 MotionMatrix Odometry::TimingCovariance(const Frame& frame,
@@ -175,11 +180,11 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
                                        const MotionMatrix* covariance) const {
   const MotionMatrix usual = IndependentErrors(
       options_.guess_sigma_rotation, options_.guess_sigma_translation);
-  const bool is_certain = covariance != nullptr;
   return {cur_from_prev, cur_from_prev * cur_from_ref_,
-          ComposedCovariance(cur_from_prev, is_certain ? *covariance : usual,
+          ComposedCovariance(cur_from_prev,
+                             covariance != nullptr ? *covariance : usual,
                              cur_from_ref_, covariance_),
-          is_certain};
+          covariance};
 }
 
 bool Odometry::Follow(const PreparedFrame& measured,
@@ -237,19 +242,19 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   const auto track = [&](const PreparedFrame& frame,
                          const VelocityPrior* velocity, const Rigid3d* found) {
     const auto from = [&](const Rigid3d& cur_from_ref) {
-      TrackingGuess guess = cur_from_ref;
+      TrackingGuess guess = GuessOf(cur_from_ref);
       guess.velocity = velocity;
       guess.leaves_refinement = is_provisional;
-      guess.aligns_depth = aligns_depth_;
       return guess;
     };
-    if (found != nullptr &&
+    const bool is_certain = prediction.has_value() && prediction->given;
+    if (found != nullptr && !is_certain &&
         attempts_.Try(frame, *reference_, from(*found), result)) {
       return true;
     }
     if (prediction.has_value()) {
       TrackingGuess guess = from(prediction->cur_from_ref);
-      if (prediction->is_certain) guess.covariance = &prediction->covariance;
+      if (is_certain) guess.covariance = &prediction->covariance;
       if (attempts_.Try(frame, *reference_, guess, result)) return true;
     }
     return attempts_.TryInTurn(
@@ -299,9 +304,10 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
       keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
                              kMaxReturnFlow * options_.max_flow_px, reference_);
   if (earlier != nullptr &&
-      attempts_.TryFallback(frame, *earlier,
-                            world_from_cam.Inverse() * earlier->world_from_cam,
-                            result, [&] { return !NeedsNewReference(); })) {
+      attempts_.TryFallback(
+          frame, *earlier,
+          GuessOf(world_from_cam.Inverse() * earlier->world_from_cam), result,
+          [&] { return !NeedsNewReference(); })) {
     reference_ = earlier;
     TakeMotion(result);
     return;
@@ -335,7 +341,7 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
     return false;
   }
   reference_ = added;
-  if (has_shutter_) shutter_tracking_.AddReference(frame, seen);
+  if (has_shutter_) shutter_tracking_.AddReference(frame, *added);
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;

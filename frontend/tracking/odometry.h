@@ -70,7 +70,7 @@ class Odometry {
   Odometry(const OdometryOptions& options, std::unique_ptr<Tracker> tracker);
 
   // `cur_from_prev_guess`: the motion since the previous frame from another
-  // source (wheels, an inertial sensor). It is tried first and believed only if
+  // source (wheels, an inertial sensor). It is tried first and used only if
   // the images agree; while tracking is lost, the pose follows it. Its
   // covariance, as in MotionEstimate, becomes the prior of costs that have one;
   // null: unknown (see OdometryOptions). The images are copied: their memory
@@ -129,8 +129,8 @@ class Odometry {
   // The pose predicted from a motion guess.
   struct Prediction {
     Rigid3d cur_from_prev, cur_from_ref;
-    MotionMatrix covariance;  // of cur_from_ref
-    bool is_certain = false;  // the guess came with its covariance
+    MotionMatrix covariance;              // of cur_from_ref
+    const MotionMatrix* given = nullptr;  // of cur_from_prev, if known
   };
 
   // Covariance of the motion due to the uncertain capture time at `twist`.
@@ -140,6 +140,9 @@ class Odometry {
   void JudgeInflation(TrackedFrame* result);
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
+  TrackingGuess GuessOf(const Rigid3d& cur_from_ref) const {
+    return {cur_from_ref, aligns_depth_};
+  }
   bool Follow(const PreparedFrame& frame,
               const std::optional<Prediction>& prediction,
               TrackedFrame* result);

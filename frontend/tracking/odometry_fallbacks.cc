@@ -46,7 +46,7 @@ const PreparedFrame* Odometry::LookFromLast(
   ShutterTracking::Found before = shutter_tracking_.TakeFound();
   std::optional<Prediction> since;
   if (prediction.has_value()) {
-    since = Predict(prediction->cur_from_prev, nullptr);
+    since = Predict(prediction->cur_from_prev, prediction->given);
   }
   const PreparedFrame* const frame = Look(measured, since, false, &from_last);
   result->iterations = from_last.iterations;
@@ -95,7 +95,7 @@ bool Odometry::MakeLastReference(TrackedFrame* result) {
       AddKeyframe(keyframe, nullptr, reference_, &why_not);
   if (added == nullptr) return false;
   reference_ = added;
-  shutter_tracking_.AddReference(last_->frame, keyframe.frame);
+  shutter_tracking_.AddReference(last_->frame, *added);
   result->previous_is_reference = true;
   last_.reset();
   cur_from_ref_ = Rigid3d();
@@ -111,10 +111,10 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   if (!place.has_value()) return false;
   OdometryKeyframe* keyframe = keyframes_.Find(place->keyframe);
-  TrackingGuess guess = place->cur_from_keyframe;
+  TrackingGuess guess = GuessOf(place->cur_from_keyframe);
   const VelocityPrior velocity = shutter_tracking_.velocity()->Prior(
       std::nullopt, interval_, frame.color_shutter.offset);
-  if (has_shutter_) guess.velocity = &velocity;
+  if (has_shutter_ && interval_ > 0.0) guess.velocity = &velocity;
   if (!attempts_.Try(frame, *keyframe, guess, result) ||
       result->status != TrackingStatus::kOk) {
     return false;
@@ -132,7 +132,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   TakeMotion(result);
   cur_from_prev_ = Rigid3d();
   result->relocalised = true;
-  Accept(frame, result);
+  Accept(frame.WithTwist(twist_), result);
   return true;
 }
 
@@ -201,13 +201,13 @@ void Odometry::ReturnToEarlierSegment(const PreparedFrame& frame,
   }
   OdometryKeyframe* found = keyframes_.Find(earlier_segment_->reference);
   if (found == nullptr ||
-      !attempts_.TryFallback(frame, *found, earlier_segment_->cur_from_ref,
-                             result)) {
+      !attempts_.TryFallback(frame, *found,
+                             GuessOf(earlier_segment_->cur_from_ref), result)) {
     const StageTimer timer(&result->relocalise_ms);
     const auto place = relocaliser_.Find(frame, keyframes_.Before(segment_));
     if (!place.has_value()) return;
     found = keyframes_.Find(place->keyframe);
-    if (!attempts_.TryFallback(frame, *found, place->cur_from_keyframe,
+    if (!attempts_.TryFallback(frame, *found, GuessOf(place->cur_from_keyframe),
                                result)) {
       return;
     }

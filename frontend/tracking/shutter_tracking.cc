@@ -84,7 +84,8 @@ const PreparedFrame* ShutterTracking::Follow(
     if (!track(*found_.frame, &prior, &found)) return nullptr;
     look();
     if (early_->is_free) {
-      reference->timing_covariance = tracked.twist_covariance;
+      reference->timing_covariance =
+          early_->timing_covariance + tracked.twist_covariance;
     }
   }
   if (!IsOfAHand(found_.between.value_or(Twist())) ||
@@ -157,15 +158,16 @@ PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
 }
 
 void ShutterTracking::AddReference(const Frame& frame,
-                                   const Frame& at_one_moment) {
+                                   const Keyframe& reference) {
   early_ = EarlyReference{frame,
                           TargetFromMiddle(frame),
                           /*is_free=*/!frame.twist.has_value(),
                           /*is_late=*/found_.between.has_value(),
                           between_,
-                          interval_};
+                          interval_,
+                          reference.timing_covariance};
   early_->frame.color.release();
-  early_->frame.twist = at_one_moment.twist;
+  early_->frame.twist = reference.frame.twist;
 }
 
 }  // namespace rgbd_pose

@@ -19,8 +19,9 @@ struct EarlyReference {
   Rigid3d target_from_middle;  // of the camera for which it is resampled
   bool is_free = false;  // pose found without velocity: valid at the stamp
   bool is_late = false;  // the next frame has determined its velocity already
-  std::optional<Twist> before;  // mean velocity in the interval before it
-  double interval = 0.0;        // length of this interval, s
+  std::optional<Twist> before;     // mean velocity in the interval before it
+  double interval = 0.0;           // length of this interval, s
+  MotionMatrix timing_covariance;  // of the reference, as first known
 };
 
 // Tracks frames whose rows were exposed one after another, or whose depth was
@@ -87,8 +88,8 @@ class ShutterTracking {
   // was found, the mean velocity between both is used as well.
   PreparedFrame LastAtOneMoment(const Frame& last);
 
-  // Registers a new reference, with its frame corrected to one moment.
-  void AddReference(const Frame& frame, const Frame& at_one_moment);
+  // Registers a new reference, made of this frame at one moment.
+  void AddReference(const Frame& frame, const Keyframe& reference);
 
  private:
   PreparedFrame Rectified(Frame frame, const Rigid3d& target_from_middle);

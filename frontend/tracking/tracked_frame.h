@@ -8,7 +8,7 @@
 
 namespace rgbd_pose {
 
-// Whether to believe the pose of a frame.
+// How reliable the pose of a frame is.
 enum class TrackingStatus {
   kOk,        // a pose on which many matches agree
   kDegraded,  // a pose, but from few or contradicting matches
@@ -65,10 +65,11 @@ struct TrackedFrame {
   bool is_predicted = false;
 
   // The motions by which the frame was tracked, between frames named by index.
-  // The first edge leads to its reference. If the reference changes to an
-  // earlier one, a second edge leads to the reference that was left. For a
-  // predicted frame: the prediction, less certain with every frame. No edges if
-  // the motion or its uncertainty is unknown.
+  // The first edge gives its pose: it leads to its reference or, with
+  // previous_is_reference, possibly to the reference before. If the reference
+  // changes to an earlier one, a second edge leads to the one that was left.
+  // For a predicted frame: the prediction, less certain with every frame. No
+  // edges if the motion or its uncertainty is unknown.
   std::vector<RelativePose> edges;
 
   // What the motion was estimated from.

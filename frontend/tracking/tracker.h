@@ -70,8 +70,9 @@ class Reference {
 // Where to search for a frame.
 struct TrackingGuess {
   // A motion about which nothing else is known; the usual case.
-  TrackingGuess(const Rigid3d& motion)  // NOLINT(*-explicit-*)
-      : cur_from_ref(motion) {}
+  TrackingGuess(const Rigid3d& motion,  // NOLINT(*-explicit-*)
+                bool has_known_times = true)
+      : cur_from_ref(motion), aligns_depth(has_known_times) {}
 
   // The start of the search and the mean of priors.
   Rigid3d cur_from_ref;
@@ -93,7 +94,7 @@ struct TrackingGuess {
 
   // Whether depth and gray levels are of one moment: times are known, or the
   // camera is slow. If not, depth is not aligned where neighbours err alike.
-  bool aligns_depth = true;
+  bool aligns_depth;
 };
 
 // Returns what a guess says about a motion, with the covariance of the guess or

@@ -67,7 +67,6 @@ struct Strip {
     }
   }
 
-  // `colors`: one row, for the weights from 0 to 1.
   void DrawLegend(const cv::Mat& colors) {
     const int row = caption_rows;
     const std::string low = "robust weight  0";

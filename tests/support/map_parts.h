@@ -36,13 +36,17 @@ inline KeyframeMap NoiseMap(int keyframes, int seed) {
     const Eigen::Quaterniond rotation(0.1 * i + seed, 0.2, -0.3, 0.7);
     const Rigid3d pose(rotation, place);
     const int id = 7 * i - 3;
-    map.keyframes.push_back(
-        {id, i / 3, pose, {}, StoredImages(NoiseFrame(100 * seed + i))});
+    map.keyframes.push_back({id,
+                             i / 3,
+                             pose,
+                             {},
+                             StoredImages(NoiseFrame(100 * seed + i)),
+                             MotionMatrix::Constant(i * M_PI)});
     if (i == 0) continue;
     const MotionMatrix root = MotionMatrix::Identity() / (3.0 + i) +
                               MotionMatrix::Constant(1e-5 * M_PI);
     const MotionMatrix covariance = root * root.transpose() / 7e5;
-    map.edges.push_back({id - 7, id, pose.Inverse(), covariance});
+    map.edges.push_back({{id - 7, id, pose.Inverse(), covariance}, i % 2 == 0});
   }
   return map;
 }
@@ -67,15 +71,16 @@ inline bool IsSameMap(const KeyframeMap& a, const KeyframeMap& b) {
         x.images.timestamp != y.images.timestamp ||
         x.images.depth_delay != y.images.depth_delay ||
         x.images.depth_scale != y.images.depth_scale ||
+        x.timing_covariance != y.timing_covariance ||
         x.images.gray->bytes != y.images.gray->bytes ||
         x.images.depth->bytes != y.images.depth->bytes) {
       return false;
     }
   }
   for (size_t i = 0; i < a.edges.size(); ++i) {
-    const RelativePose& x = a.edges[i];
-    const RelativePose& y = b.edges[i];
-    if (x.ref != y.ref || x.cur != y.cur ||
+    const MapEdge& x = a.edges[i];
+    const MapEdge& y = b.edges[i];
+    if (x.is_tracked != y.is_tracked || x.ref != y.ref || x.cur != y.cur ||
         !IsSameMotion(x.cur_from_ref, y.cur_from_ref) ||
         x.covariance != y.covariance) {
       return false;

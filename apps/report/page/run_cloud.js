@@ -12,8 +12,10 @@ function wordsOf(base64) {
   return Array.from({length: view.byteLength / 2}, (_, i) => view.getUint16(2 * i, true));
 }
 
-// Coordinates and colours of the points of a preview.
-function previewPoints(preview, move = point => point) {
+// Coordinates and colours of the points of a preview, which is in the world of
+// the trajectory.
+function previewPoints(preview, data) {
+  const move = truthFromMap(data);
   const steps = wordsOf(preview.positions), color = bytesOf(preview.colors);
   const points = [...Array(preview.points).keys()].map(i => move([0, 1, 2].map(
       k => preview.origin_m[k] + preview.step_m * steps[3 * i + k])));
@@ -27,17 +29,16 @@ function previewPoints(preview, move = point => point) {
 function cloudTraces(data) {
   const cloud = data.cloud;
   if (!cloud || cloud.points === 0) return [];
-  const {x, y, z, colors} = previewPoints(cloud);
+  const {x, y, z, colors} = previewPoints(cloud, data);
   return [{
     type: 'scatter3d', mode: 'markers', name: 'point cloud', hoverinfo: 'skip',
     x, y, z, marker: {size: 2, color: colors},
   }];
 }
 
-// The mesh is in the world of the trajectory.
 function meshTraces(data) {
   const mesh = data.mesh;
-  const {x, y, z, colors} = previewPoints(mesh, truthFromMap(data));
+  const {x, y, z, colors} = previewPoints(mesh, data);
   const corners = wordsOf(mesh.corners);
   const at = k => corners.filter((_, i) => i % 3 === k);
   return [{
@@ -58,17 +59,10 @@ function seenNote(data, element) {
   const frames = count => `${number(count)} frame${count === 1 ? '' : 's'}`;
   const note = text => element.append(
       make('p', {class: 'soft caption screen', id: 'cloud-note'}, text));
-  const all = data.metrics.cloud;
-  if (data.mesh) {
-    note(`Mesh: ${number(data.mesh.triangles)} of the ` +
-         `${number(data.mesh.all_triangles)} triangles of ${data.mesh.file}, from ` +
-         `${frames(data.mesh.frames)}. A click on its name hides it.`);
-  } else if (all) {
-    note(data.cloud
-        ? `Point cloud: ${number(data.cloud.points)} of the ` +
-          `${number(all.points)} points of ${setting(data, 'save_cloud')}, from ` +
-          `${frames(all.frames)}. A click on its name hides it.`
-        : 'The point cloud is not shown: this run has no cloud_preview.json; ' +
-          'repeat it with this version.');
-  }
+  const seen = data.mesh || data.cloud;
+  if (!seen) return;
+  const [name, shown, what] = data.mesh
+      ? ['Mesh', seen.triangles, 'triangles'] : ['Point cloud', seen.points, 'points'];
+  note(`${name}: ${number(shown)} of the ${number(seen.all)} ${what} of ` +
+       `${seen.file}, from ${frames(seen.frames)}. A click on its name hides it.`);
 }

@@ -52,6 +52,23 @@ TEST_F(BatchListTest, PathsCountFromTheList) {
   EXPECT_EQ(sequences[2].camera, folder_ / "mine.yaml");
 }
 
+TEST_F(BatchListTest, OnlyWordsOfTheListArePatterns) {
+  folder_.Write("b[1]*/data/x/camera.yaml", "");
+  const auto sequences =
+      ReadSequenceList(folder_.Write("b[1]*/list.txt", "data/?\n"));
+  ASSERT_EQ(sequences.size(), 1u);
+  EXPECT_EQ(sequences[0].folder, folder_ / "b[1]*/data/x");
+}
+
+TEST_F(BatchListTest, KnowsBagsAndFoldersWithACalibration) {
+  folder_.Write("data/x.mcap.zstd", "");
+  folder_.Write("data/old/rgb.txt", "");
+  folder_.Write("data/old/calibration.txt", "");
+  const auto sequences = Read("../data/x.mcap.zstd\n../data/old\n");
+  ASSERT_EQ(sequences.size(), 2u);
+  EXPECT_EQ(sequences[1].camera, "");
+}
+
 TEST_F(BatchListTest, APatternStandsForAllFoldersInOrder) {
   const auto sequences = Read("../data/* ros_default\n");
   ASSERT_EQ(sequences.size(), 3u);

@@ -25,9 +25,9 @@ TEST_F(BadInputTest, BatchLists) {
           {"missing", nullptr, "", 2, kList + ": cannot be opened"},
           {"empty", List("# nothing\n"), "", 2, kList + ": lists no sequences"},
           {"no such folder", List(".\nnone\n"), "", 2,
-           kList + ":2: no such folder: {seq}/none"},
+           kList + ":2: no such folder: none"},
           {"a pattern that nothing matches", List("no*\n"), "", 2,
-           kList + ":1: no such folder: {seq}/no*"},
+           kList + ":1: no such folder: no*"},
           {"a file", List("rgb.txt\n"), "", 2, kList + ":1: no such folder"},
           {"twice", List("../seq\n../seq\n"), "", 2,
            kList + ":2: sequence name 'seq' is already used in line 1"},
@@ -49,6 +49,16 @@ TEST_F(BadInputTest, BatchFlags) {
   ExpectEach(
       kBadBatch,
       {
+          {"a setting that has a list",
+           [](const Seq& seq) {
+             seq.Write("list.txt", "../seq\n");
+             seq.Write("set.flags",
+                       "# mine\n--depth_noise=kinect\n"
+                       "--loss=huber\n");
+           },
+           "--settings={seq}/set.flags", 2,
+           "{seq}/set.flags:3: --loss cannot be set for all runs; use "
+           "--losses"},
           {"cost", list, "--costs=magic", 2,
            "--costs: unknown name 'magic'; available: "},
           {"loss", list, "--losses=tukey,", 2, "--losses: unknown loss ''"},

@@ -40,6 +40,9 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            "{seq}/none/cloud.ply: cannot be written (No such file"},
           {"a mesh of an unknown kind", nullptr, "--save_mesh={dir}/mesh.obj",
            2, "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
+          {"a mesh without depths", nullptr,
+           "--min_depth=4.2 --save_mesh={dir}/mesh.ply", 2,
+           "--voxel or --max_depth: "},
           {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
            "{seq}: is a folder, but a file is expected"},
       });

@@ -292,6 +292,13 @@ TEST_F(BatchProgramTest, OnlyOneWorksOnAFolder) {
   EXPECT_THAT(ReadTextFile(errors), HasSubstr("locked by another rgbd_batch"));
 }
 
+// Some daemons start programs so.
+TEST_F(BatchProgramTest, EndsWhereSignalsOfChildrenAreIgnored) {
+  const RunResult run =
+      Run("timeout 100 env --ignore-signal=CHLD " + Call("runs"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
 TEST_F(BatchProgramTest, ShardsMergeToTheSummaryOfOneBatch) {
   ASSERT_EQ(Run(Call("local")).exit_code, 0);
   ASSERT_EQ(Run(Call("shards") + " --shard=0/2").exit_code, 0);

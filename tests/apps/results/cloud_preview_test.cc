@@ -56,8 +56,7 @@ TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
                      static_cast<uint8_t>(i), 128};
       points.push_back(point);
     }
-    const std::vector<ColoredPoint> decoded =
-        Decode(CloudPreview(points, Rigid3d()));
+    const std::vector<ColoredPoint> decoded = Decode(CloudPreview(points));
     ASSERT_EQ(decoded.size(), points.size());
     for (size_t i = 0; i < points.size(); ++i) {
       // Half a step of 12 m in 16 bits.
@@ -65,18 +64,6 @@ TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
       EXPECT_EQ(decoded[i].color, points[i].color);
     }
   }
-}
-
-TEST(CloudPreviewTest, PointsAreMovedIntoTheShownWorld) {
-  const Rigid3d shown_from_world(
-      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())),
-      Eigen::Vector3d(10.0, 20.0, 30.0));
-  std::vector<ColoredPoint> points(2);
-  points[0].position = {1.0F, 0.0F, 0.0F};
-  const std::vector<ColoredPoint> decoded =
-      Decode(CloudPreview(points, shown_from_world));
-  EXPECT_LT((decoded[0].position - Eigen::Vector3f(10, 21, 30)).norm(), 1e-4F);
-  EXPECT_LT((decoded[1].position - Eigen::Vector3f(10, 20, 30)).norm(), 1e-4F);
 }
 
 TEST(CloudPreviewTest, AMeshKeepsItsCorners) {

@@ -105,7 +105,7 @@ G2oGraph ReadG2o(const std::string& text) {
       const Eigen::LLT<MotionMatrix> llt(information);
       EXPECT_EQ(llt.info(), Eigen::Success);
       edge.error.root = llt.matrixU();
-      graph.edges.push_back(edge);
+      graph.edges.push_back({edge});
     }
     EXPECT_TRUE(in) << line;
     EXPECT_TRUE((in >> std::ws).eof()) << line;
@@ -175,7 +175,7 @@ KeyframeMap SolvedMap() {
       graph.AddEdge(edge);
       edge.ref = map.keyframes[ref].id;
       edge.cur = map.keyframes[cur].id;
-      map.edges.push_back(edge);
+      map.edges.push_back({edge});
     }
   }
   const GraphSolution solution = graph.Solve();
@@ -221,7 +221,7 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     edge.cur = 1;
     edge.cur_from_ref = world.Motion(1.0, 0.5) * motion;
     edge.covariance = AnyCovariance(&world);
-    map.edges.push_back(edge);
+    map.edges.push_back({edge});
     G2oGraph graph = ReadG2o(FormatG2o(map));
     const G2oPose& i = graph.poses.at(0);
     const G2oPose& j = graph.poses.at(1);

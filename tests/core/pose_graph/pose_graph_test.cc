@@ -53,6 +53,25 @@ TEST(PoseGraphTest, ATreeTellsNothingTwice) {
   EXPECT_EQ(graph.OvercountingFactor(), 2.0);
 }
 
+// Edges between fixed poses tell nothing, and fixed poses need no edge.
+TEST(PoseGraphTest, FixedPosesDoNotDiluteTheFactor) {
+  Circle circle(4);
+  PoseGraph graph;
+  for (int i = 0; i < 5; ++i) graph.AddPose(circle.truth[i], i < 4);
+  for (const RelativePose& edge : circle.edges) graph.AddEdge(edge);
+  for (int i = 0; i < 5; ++i) {
+    RelativePose edge = circle.edges[3];
+    edge.ref = 3;
+    edge.cur = 4;
+    graph.AddEdge(edge);
+  }
+  EXPECT_EQ(graph.OvercountingFactor(), 6.0);
+  const auto twice = graph.MarginalCovariances({4, 4});
+  ASSERT_EQ(twice.size(), 2u);
+  EXPECT_EQ(twice[0], twice[1]);
+  EXPECT_GT(twice[0](0, 0), 0.0);
+}
+
 TEST(EdgeBlockTest, JacobianIsThatOfTheOracle) {
   RandomWorld world(3);
   for (int trial = 0; trial < 50; ++trial) {

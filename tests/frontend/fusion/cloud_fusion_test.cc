@@ -79,26 +79,16 @@ TEST(CloudFusionTest, PutsDistortedViewsTogetherToTheRoom) {
   EXPECT_GT(deepest, -kTolerance);  // a wall is in view
 }
 
-TEST(CloudFusionTest, WantsGoodFramesThatMoved) {
-  CloudFusion fusion(Options(Camera()));
-  TrackedFrame tracked;
-  tracked.status = TrackingStatus::kDegraded;
-  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
-  tracked.status = TrackingStatus::kOk;
-  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
-  fusion.Add(WallAndPlate(Camera(), 0), tracked.world_from_cam);
-  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
-  tracked.world_from_cam.translation.x() = 0.049;
-  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
-  tracked.world_from_cam.translation.x() = 0.051;
-  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
-  tracked.world_from_cam =
-      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(3.1 * M_PI / 180.0,
-                                                   Eigen::Vector3d::UnitY())),
-              Eigen::Vector3d::Zero());
-  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
-  tracked.segment = 1;
-  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
+TEST(MotionFilterTest, IsReachedByAShiftOrATurn) {
+  const MotionFilter filter;
+  Rigid3d moved;
+  EXPECT_FALSE(filter.IsReached(moved));
+  moved.translation.x() = 0.049;
+  EXPECT_FALSE(filter.IsReached(moved));
+  moved.translation.x() = 0.051;
+  EXPECT_TRUE(filter.IsReached(moved));
+  EXPECT_TRUE(filter.IsReached(Rigid3d::FromRotationVector(
+      {0, 3.1 * M_PI / 180.0, 0}, Eigen::Vector3d::Zero())));
 }
 
 // Rows of pixels alternate between 1 m and 1.03 m: this is noise for one model,

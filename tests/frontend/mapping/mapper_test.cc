@@ -50,6 +50,7 @@ TEST(MapperTest, TrackedEdgesJoinSegments) {
   }
   EXPECT_EQ(mapper.Add(Noise(9), edges).joined, 1);
   const KeyframeMap map = mapper.Map();
+  for (const MapEdge& measured : map.edges) EXPECT_TRUE(measured.is_tracked);
   for (const Keyframe& keyframe : map.keyframes) {
     EXPECT_EQ(keyframe.segment, 7);
     EXPECT_NEAR(keyframe.world_from_cam.translation.x(), 7.0, 1e-9);

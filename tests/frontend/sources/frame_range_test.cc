@@ -69,6 +69,23 @@ TEST(FrameRangeTest, TakesPartsByTime) {
   EXPECT_EQ(NumbersIn("0s-4s:4"), (std::vector<int>{0, 4, 8}));
 }
 
+// Like a bag: the times of its frames are not known before they are read.
+class UnknownTimes final : public FrameSource {
+ public:
+  std::optional<RgbdFrame> Next() override { return frames_.Next(); }
+  const RgbdCamera& camera() const override { return frames_.camera(); }
+
+ private:
+  TenFrames frames_;
+};
+
+TEST(FrameRangeTest, ARangeBeyondTheEndIsFoundOutThere) {
+  const auto part =
+      PartOf(std::make_unique<UnknownTimes>(), ParseFrameRange("10-20"));
+  ExpectInputError([&] { part->Next(); },
+                   {"the recording has only 10 frames, none of them"});
+}
+
 TEST(FrameRangeTest, RefusesWhatIsNoPart) {
   for (const char* text : {"10-20", "4.6s-9s"}) {
     ExpectInputError(

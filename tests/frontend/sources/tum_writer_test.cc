@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
@@ -126,6 +127,53 @@ TEST_F(TumWriterTest, DepthHasItsOwnTime) {
     EXPECT_NEAR(read->Read(i).depth_delay, -0.0125,
                 1e-6);  // digits of the text
   }
+}
+
+// Depth images in another order, one for two frames.
+TEST_F(TumWriterTest, KeepsPairsThatAreNotNearestInTime) {
+  Write(folder_.string());
+  const std::string list = (parent_ / "pairs.txt").string();
+  const SyntheticDataset dataset(options_);
+  const auto name = [&](const std::string& kind, int i) {
+    const std::string stamp = FixedNumber(dataset.timestamp(i), 6);
+    return stamp + " " + kind + "/" + stamp + ".png";
+  };
+  WriteFileAtomically(list, name("rgb", 0) + " " + name("depth", 1) + "\n" +
+                                name("rgb", 1) + " " + name("depth", 0) + "\n" +
+                                name("rgb", 2) + " " + name("depth", 2) + "\n" +
+                                name("rgb", 3) + " " + name("depth", 2) + "\n");
+  SourceOptions options;
+  options.path = folder_.string();
+  options.camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  options.associations_file = list;
+  const auto given = OpenTum(options);
+  const std::string copy = (parent_ / "copy").string();
+  TumWriterOptions writer;
+  writer.threads = 4;
+  const WrittenSequence written =
+      WriteTumSequence(OpenTum(options).get(), copy, writer);
+  EXPECT_EQ(written.frames, 4);
+  EXPECT_NE(written.remark.find("--associations"), std::string::npos);
+  options.path = copy;
+  options.associations_file = copy + "/associations.txt";
+  const auto read = OpenTum(options);
+  ASSERT_EQ(read->size(), 4);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(read->Read(i).depth_delay, given->Read(i).depth_delay, 2e-6);
+    EXPECT_EQ(cv::norm(read->Read(i).depth, given->Read(i).depth, cv::NORM_INF),
+              0.0);
+  }
+  options.associations_file.clear();
+  EXPECT_EQ(OpenTum(options)->size(), 3);  // the lists are in order
+}
+
+TEST_F(TumWriterTest, ALinkToAnEmptyFolderIsFollowed) {
+  fs::create_directories(folder_);
+  const fs::path link = parent_ / "link";
+  fs::create_directory_symlink(folder_, link);
+  Write(link.string());
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
 }
 
 TEST_F(TumWriterTest, CameraReadsBackExactly) {

@@ -75,6 +75,23 @@ TEST_F(LostPolicyTest, PredictMovesOn) {
   EXPECT_GT(step.translation.norm(), 1e-4) << "the test is vacuous";
 }
 
+TEST_F(LostPolicyTest, PredictsAtTheSameSpeedAfterMissingFrames) {
+  OdometryOptions options;
+  options.on_lost = LostPolicy::kPredict;
+  Odometry odometry = MakeOdometry(here_->camera().camera, "tukey", options);
+  Rigid3d last;
+  double moved[8] = {};
+  for (const int i : {0, 1, 2, 6, 7}) {  // three are missing, 7 is dark
+    Frame frame = i < 7 ? here_->Read(i) : Black(here_->Read(i));
+    frame.timestamp = i / 30.0;
+    const Rigid3d pose = odometry.Track(frame).world_from_cam;
+    moved[i] = (last.Inverse() * pose).translation.norm();
+    last = pose;
+  }
+  EXPECT_GT(moved[6], 1e-4) << "the test is vacuous";
+  EXPECT_NEAR(moved[7], moved[6] / 4.0, 0.1 * moved[6]);
+}
+
 TEST_F(LostPolicyTest, StopNeverComesBack) {
   OdometryOptions options;
   options.on_lost = LostPolicy::kStop;

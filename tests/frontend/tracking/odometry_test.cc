@@ -134,6 +134,26 @@ TEST(OdometryTest, DescriptorsBridgeALargeTurn) {
   }
 }
 
+// Where the current frame has no depth, matches cannot be used, but what they
+// show agrees.
+TEST(OdometryTest, HolesInDepthDoNotContradict) {
+  const SyntheticDataset dataset = Room("xyz", 30);
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  for (int i = 0; i < 30; ++i) {
+    Frame frame = dataset.Read(i).Clone();
+    constexpr int kSide = 24;  // px; in each frame other squares are missing
+    for (int y = 0; y < frame.depth.rows; ++y) {
+      for (int x = 0; x < frame.depth.cols; ++x) {
+        if ((x / kSide + y / kSide + i) % 5 >= 2) {
+          frame.depth.at<uint16_t>(y, x) = Frame::kNoDepth;
+        }
+      }
+    }
+    const TrackedFrame tracked = odometry.Track(frame);
+    EXPECT_EQ(tracked.status, TrackingStatus::kOk) << i << tracked.reason;
+  }
+}
+
 // The second frame is far from the first; only the guess makes it easy to find.
 TEST(OdometryTest, AMotionGuessIsTriedFirst) {
   const SyntheticDataset dataset = Room("pan_tilt", 40);

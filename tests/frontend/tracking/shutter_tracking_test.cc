@@ -99,6 +99,30 @@ TEST(ShutterTrackingTest, GoesOnFromANewReference) {
   EXPECT_GE(new_references, 1);
 }
 
+// However a frame is tracked: against the reference, the last frame or a mended
+// reference, a certain guess decides.
+TEST(ShutterTrackingTest, ACertainGuessIsTrustedInEveryWay) {
+  const ShutterSequence sequence("handheld", RollingShutters(1.0), 30);
+  TrackerParts parts = PartsFor(sequence.dataset.camera().camera);
+  parts.estimator = Estimator(
+      {}, MakeRobustCosts("bidirectional_point+motion_prior", "tukey,none"));
+  Odometry odometry({}, MakeTracker("features", std::move(parts)));
+  const MotionMatrix covariance = 1e-12 * MotionMatrix::Identity();
+  Rigid3d last;
+  int from_last = 0;
+  for (int i = 0; i < 30; ++i) {
+    const Rigid3d guess = sequence.Motion(std::max(i - 1, 0), i);
+    const TrackedFrame tracked =
+        odometry.Track(sequence.frames[i], i > 0 ? &guess : nullptr,
+                       i > 0 ? &covariance : nullptr);
+    const Rigid3d error = guess * last.Inverse() * tracked.world_from_cam;
+    EXPECT_LT(error.translation.norm() + error.Angle(), 1e-5) << i;
+    from_last += tracked.previous_is_reference;
+    last = tracked.world_from_cam;
+  }
+  EXPECT_GE(from_last, 1);
+}
+
 // Rotation (up to 38 degrees/s, almost in place) and translation along the
 // axes. In one of two directions, translation hides most of the shutter's
 // effect.
