@@ -17,7 +17,7 @@ assert text.startswith(b"rgbd_pose_map 1\n") and last == f"checksum {checksum(ab
 for line in above.decode().splitlines()[1:]:
     kind, *words = line.split()
     if kind == "keyframe":
-        gray, depth = (folder / f"{name}.png" for name in words[-2:])
+        gray, depth = (folder / f"{name}.png" for name in words[12:14])
         assert checksum(gray.read_bytes()) == gray.stem
         assert checksum(depth.read_bytes()) == depth.stem
         print("keyframe", words[0], "at", *words[5:8], gray, depth)

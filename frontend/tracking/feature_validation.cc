@@ -24,15 +24,6 @@ bool AgreesWithMotion(const FeatureMatches& found, size_t i,
          (*expected - Eigen::Vector2d(cur.u, cur.v)).norm() <= kMaxErrorPx;
 }
 
-// Whether match `i` of the tracked features agrees with their motion. Matches
-// that no cost could use, such as those without depth, are judged by pixels.
-bool Agrees(const TrackingResult& tracked, size_t i) {
-  const MotionEstimate& estimate = tracked.estimate;
-  return estimate.residual_degrees[i] > 0
-             ? estimate.is_inlier[i]
-             : AgreesWithMotion(tracked.matches, i, estimate.cur_from_prev);
-}
-
 // Counts features in square cells of an image; pixels outside are ignored.
 class CellCounts {
  public:
@@ -74,8 +65,10 @@ FeatureValidation::FeatureValidation(const FeatureSet& last,
   std::vector<bool> agrees(last.observations.size(), false);
   std::vector<bool> counts(last.observations.size(), missing_failed);
   for (size_t i = 0; i < found.features.size(); ++i) {
-    counts.at(found.features[i]) = true;  // throws if of another reference
-    if (Agrees(tracked, i)) agrees[found.features[i]] = true;
+    // Throws if of another reference. Matches that no cost could use, such as
+    // those without depth, tell nothing.
+    counts.at(found.features[i]) = tracked.estimate.residual_degrees[i] > 0;
+    if (tracked.estimate.is_inlier[i]) agrees[found.features[i]] = true;
   }
   // Count these too: with frequent new references they would never be trusted.
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
@@ -171,8 +164,9 @@ double MarkMoving(const FeatureSet& reference, bool missing_contradict,
   std::vector<bool> is_found(reference.observations.size(), false);
   for (size_t i = 0; i < found.features.size(); ++i) {
     const Observation& cur = found.matches[i].cur;
-    vote({cur.u, cur.v}, Agrees(*tracked, i) ? kFound : -kFound);
     is_found[found.features[i]] = true;
+    if (tracked->estimate.residual_degrees[i] == 0) continue;  // tells nothing
+    vote({cur.u, cur.v}, tracked->estimate.is_inlier[i] ? kFound : -kFound);
   }
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
     const Observation& cur = on_probation.matches[i].cur;

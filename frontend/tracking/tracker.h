@@ -70,9 +70,11 @@ class Reference {
 // Where to search for a frame.
 struct TrackingGuess {
   // A motion about which nothing else is known; the usual case.
-  TrackingGuess(const Rigid3d& motion,  // NOLINT(*-explicit-*)
-                bool has_known_times = true)
-      : cur_from_ref(motion), aligns_depth(has_known_times) {}
+  TrackingGuess(const Rigid3d& motion)  // NOLINT(*-explicit-*)
+      : TrackingGuess(motion, true) {}
+  // `aligns`: see aligns_depth.
+  TrackingGuess(const Rigid3d& motion, bool aligns)
+      : cur_from_ref(motion), aligns_depth(aligns) {}
 
   // The start of the search and the mean of priors.
   Rigid3d cur_from_ref;

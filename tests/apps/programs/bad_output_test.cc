@@ -81,9 +81,6 @@ TEST_F(BadInputTest, FullDisks) {
               {"pictures", nullptr,
                WithFullDisk(40, Odometry() + "--debug_images=all"), 2,
                "debug/000000.png: writing failed (File too large)"},
-              {"cloud", nullptr,
-               WithFullDisk(40, Odometry() + "--save_cloud={dir}/cloud.ply"), 2,
-               "{dir}/cloud.ply: writing failed (File too large)"},
               {"simulate", nullptr,
                WithFullDisk(40, RGBD_SIMULATE " --frames=2 --output={dir}/out"),
                2, ".png: writing failed (File too large)"},
@@ -130,6 +127,20 @@ TEST_F(BadInputTest, ARunThatFailsLeavesEarlierResultsAlone) {
   Spoiled().Remove("depth");
   EXPECT_EQ(RunCommand(call, folder_).exit_code, 2);
   EXPECT_EQ(Contents(folder_ / "out"), before);
+}
+
+// Clouds and meshes can be made later.
+TEST_F(BadInputTest, ACloudThatDoesNotFitCostsNothingElse) {
+  fs::rename(folder_ / "good", folder_ / "seq");
+  const RunResult run = RunCommand(
+      WithFullDisk(40, Fill(Odometry() + "--save_cloud={dir}/cloud.ply "
+                                         "--save_mesh={dir}/mesh.ply")),
+      folder_);
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr(".ply: writing failed (File too large); all "
+                                 "other results are in "));
+  EXPECT_TRUE(fs::exists(folder_ / "out/metrics.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "cloud.ply"));
 }
 
 // The page is by far the largest file, and can be written later.

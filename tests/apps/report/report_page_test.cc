@@ -90,15 +90,11 @@ TEST(RunReportData, LongRunsAreThinnedWithoutLosingPeaks) {
   EXPECT_EQ(data.at("frames").at("status")[2], 2);
 }
 
-// A preview left by an earlier run is ignored.
-TEST(RunReportData, TheCloudIsThatOfTheRun) {
+TEST(RunReportData, TakesTheCloudOfTheRun) {
   const TempFolder folder;
   WriteRun(folder, 3);
-  folder.Write("cloud_preview.json", R"({"points": 1})");
   EXPECT_FALSE(RunReportData(folder.path()).contains("cloud"));
-  folder.Write("metrics.json",
-               R"({"cloud": {"points": 9},
-                   "residuals": {"degrees_counts": [0, 0, 0, 1]}})");
+  folder.Write("cloud_preview.json", R"({"points": 1})");
   EXPECT_EQ(RunReportData(folder.path()).at("cloud").at("points"), 1);
   folder.Write("cloud_preview.json", "[]");
   ExpectInputError([&] { RunReportData(folder.path()); },

@@ -57,16 +57,11 @@ TEST(PoseGraphTest, ATreeTellsNothingTwice) {
 TEST(PoseGraphTest, FixedPosesDoNotDiluteTheFactor) {
   Circle circle(4);
   PoseGraph graph;
-  for (int i = 0; i < 5; ++i) graph.AddPose(circle.truth[i], i < 4);
+  for (int i = 0; i < 4; ++i) graph.AddPose(circle.truth[i], i < 3);
   for (const RelativePose& edge : circle.edges) graph.AddEdge(edge);
-  for (int i = 0; i < 5; ++i) {
-    RelativePose edge = circle.edges[3];
-    edge.ref = 3;
-    edge.cur = 4;
-    graph.AddEdge(edge);
-  }
+  for (int i = 0; i < 5; ++i) graph.AddEdge(circle.edges[2]);
   EXPECT_EQ(graph.OvercountingFactor(), 6.0);
-  const auto twice = graph.MarginalCovariances({4, 4});
+  const auto twice = graph.MarginalCovariances({3, 3});
   ASSERT_EQ(twice.size(), 2u);
   EXPECT_EQ(twice[0], twice[1]);
   EXPECT_GT(twice[0](0, 0), 0.0);

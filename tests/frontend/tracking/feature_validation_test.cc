@@ -27,6 +27,7 @@ class FeatureValidationTest : public testing::Test {
         if (is_found) {
           found_.Add(last_, i, At(left ? u : u + 15, v));
           estimate_.is_inlier.push_back(left);
+          estimate_.residual_degrees.push_back(3);
         }
       }
     }
@@ -67,9 +68,18 @@ TEST_F(FeatureValidationTest, FeaturesWhereOthersFailedAreOnProbation) {
   }
 }
 
+// For example without depth in the current frame.
+TEST_F(FeatureValidationTest, MatchesThatNoCostCouldUseTellNothing) {
+  for (size_t i = 0; i < estimate_.is_inlier.size(); ++i) {
+    if (!estimate_.is_inlier[i]) estimate_.residual_degrees[i] = 0;
+  }
+  EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
+}
+
 TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
   found_.Clear();
   estimate_.is_inlier.clear();
+  estimate_.residual_degrees.clear();
   EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 0u + 4u)
       << "all would be on probation, so none are";
   EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
@@ -77,6 +87,7 @@ TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
     if (last_.observations[i].u < 320) {
       found_.Add(last_, i, last_.observations[i]);
       estimate_.is_inlier.push_back(true);
+      estimate_.residual_degrees.push_back(3);
     }
   }
   EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 2u);
@@ -88,11 +99,13 @@ TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
 TEST_F(FeatureValidationTest, FeaturesOnProbationThatAgreeSpeakForTheirPlace) {
   FeatureMatches left{Correspondences(kKinect), {}};
   estimate_.is_inlier.clear();
+  estimate_.residual_degrees.clear();
   for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
     const Observation o = last_.observations[i];
     if (o.u < 320) {
       left.Add(last_, i, o);
       estimate_.is_inlier.push_back(true);
+      estimate_.residual_degrees.push_back(3);
     } else {
       on_probation_.Add(last_, i, At(o.v < 240 ? o.u : o.u + 15, o.v));
     }
@@ -151,6 +164,7 @@ TEST_F(FeatureValidationTest, FailuresOutsideTheImageSayNothing) {
     last_.observations.push_back(At(700 + 20 * k, 100));
     found_.Add(last_, i, At(720 + 20 * k, 100));
     estimate_.is_inlier.push_back(false);
+    estimate_.residual_degrees.push_back(3);
   }
   fresh_.observations.push_back(At(-80, 300));
   EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 3u);

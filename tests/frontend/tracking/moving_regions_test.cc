@@ -20,6 +20,7 @@ class MovingRegionsTest : public testing::Test {
         if (!left && i % 2 != 0) continue;
         found_.Add(last_, i, {left ? u : u + 15.0, 1.0 * v, 2.0, 0.5, 0.01});
         estimate_.is_inlier.push_back(left);
+        estimate_.residual_degrees.push_back(3);
       }
     }
   }
@@ -44,17 +45,27 @@ TEST_F(MovingRegionsTest, MissingFeaturesAloneAreHiddenBySomething) {
   // Nothing is found in the right half.
   found_.Clear();
   estimate_.is_inlier.clear();
+  estimate_.residual_degrees.clear();
   for (size_t i = 0; i < last_.observations.size(); ++i) {
     const Observation& o = last_.observations[i];
     if (o.u >= 320) continue;
     found_.Add(last_, i, o);
     estimate_.is_inlier.push_back(true);
+    estimate_.residual_degrees.push_back(3);
   }
   EXPECT_NEAR(MarkMoving(last_, true, &tracked_), 0.55, 0.07);
   EXPECT_FALSE(moving_.Contains(100, 200));
   EXPECT_TRUE(moving_.Contains(500, 200));
   EXPECT_EQ(MarkMoving(last_, false, &tracked_), 1.0);
   EXPECT_FALSE(moving_.Contains(500, 200)) << "a frontend that finds some only";
+}
+
+TEST_F(MovingRegionsTest, MatchesThatNoCostCouldUseTellNothing) {
+  for (size_t i = 0; i < estimate_.is_inlier.size(); ++i) {
+    if (!estimate_.is_inlier[i]) estimate_.residual_degrees[i] = 0;
+  }
+  EXPECT_EQ(MarkMoving(last_, false, &tracked_), 1.0);
+  EXPECT_FALSE(moving_.Contains(500, 200));
 }
 
 TEST_F(MovingRegionsTest, InliersCoverTheirPartOfTheImage) {

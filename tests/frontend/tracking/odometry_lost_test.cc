@@ -63,16 +63,16 @@ TEST_F(LostPolicyTest, HoldKeepsTheLastPose) {
 
 TEST_F(LostPolicyTest, PredictMovesOn) {
   const auto frames = Run(LostPolicy::kPredict, 10);
-  const Rigid3d step =
-      frames[6].world_from_cam.Inverse() * frames[7].world_from_cam;
+  const auto step_to = [&](int i) {
+    return frames[i - 1].world_from_cam.Inverse() * frames[i].world_from_cam;
+  };
+  ASSERT_GT(step_to(7).translation.norm(), 1e-4) << "the test is vacuous";
+  // Half of the time later; then after a time in which a hand changes its mind.
   for (int i = 8; i < 10; ++i) {
     EXPECT_EQ(frames[i].status, TrackingStatus::kLost);
-    const Rigid3d expected = frames[i - 1].world_from_cam * step;
-    EXPECT_LE(
-        (frames[i].world_from_cam.translation - expected.translation).norm(),
-        1e-9);
+    const Rigid3d off = step_to(i) * step_to(i) * step_to(7).Inverse();
+    EXPECT_LE(off.translation.norm() + off.Angle(), 1e-5);
   }
-  EXPECT_GT(step.translation.norm(), 1e-4) << "the test is vacuous";
 }
 
 TEST_F(LostPolicyTest, PredictsAtTheSameSpeedAfterMissingFrames) {
