@@ -200,8 +200,8 @@ std::string Aims(const std::vector<SpeedupRow>& speedups) {
     names += (names.empty() ? ": `" : ", `") + key + "` " + Number(speedup) +
              " (>= " + Number(aim) + ")";
   }
-  return "Of " + std::to_string(aims) + " speed-ups that were aimed at " +
-         std::to_string(missed) + " were missed" + names + ".";
+  return std::to_string(aims) + " speed-ups have targets; " +
+         std::to_string(missed) + " of them were missed" + names + ".";
 }
 
 }  // namespace

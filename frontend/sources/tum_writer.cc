@@ -1,6 +1,7 @@
 #include "frontend/sources/tum_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
@@ -23,8 +24,9 @@ namespace fs = std::filesystem;
 
 using StampPairs = std::vector<std::pair<double, double>>;  // colour, depth
 
+// As it is written: frames that share a depth image have the same.
 double DepthStamp(const Frame& frame) {
-  return frame.timestamp + frame.depth_delay;
+  return std::round(1e6 * (frame.timestamp + frame.depth_delay)) / 1e6;
 }
 
 std::string ImagePath(const std::string& kind, double timestamp) {

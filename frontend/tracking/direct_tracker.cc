@@ -167,7 +167,9 @@ void DirectTracker::Estimate(const Reference& reference,
   if (by_features != nullptr) {
     pair.matches = &by_features->matches.matches;
     view.moving = &by_features->moving;
-    const bool are_alike = by_features->covariance_factor > kErrAlike;
+    // Few features do not show whether they do.
+    const bool are_alike = by_features->covariance_factor > kErrAlike ||
+                           by_features->needs_new_keyframe;
     // Without a depth image, only gray levels refine the motion.
     if (are_alike && !by_features->aligns_depth) view.depth = {};
   }
