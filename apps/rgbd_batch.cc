@@ -112,8 +112,7 @@ void CheckFlags() {
   }
 }
 
-// Values of the lists are given to each run and would replace those of the
-// file.
+// Values of the lists would replace those of the file in each run.
 void CheckSettings() {
   if (FLAGS_settings.empty()) return;
   for (const TextLine& line : ReadTextTable(FLAGS_settings)) {

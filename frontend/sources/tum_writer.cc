@@ -16,6 +16,7 @@
 #include "frontend/files/camera_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/sources/frame_stream.h"
+#include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
 namespace {

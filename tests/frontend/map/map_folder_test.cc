@@ -15,6 +15,7 @@
 #include <future>
 #include <map>
 #include <random>
+#include <sstream>
 #include <thread>
 #include <tuple>
 
@@ -75,6 +76,31 @@ TEST_F(MapFolderTest, GivesBackWhatWasSaved) {
   const std::string index = ReadTextFile(map_ + "/map.txt");
   SaveMap(map_, loaded);
   EXPECT_EQ(ReadTextFile(map_ + "/map.txt"), index);
+}
+
+// Maps from before keyframes had a timing covariance and edges an origin.
+TEST_F(MapFolderTest, ReadsMapsWithoutTheNewerWords) {
+  KeyframeMap saved = NoiseMap(5, 0);
+  SaveMap(map_, saved);
+  std::istringstream index(ReadTextFile(map_ + "/map.txt"));
+  std::string older, line;
+  while (std::getline(index, line)) {
+    if (line.rfind("checksum", 0) == 0) continue;
+    if (line.rfind("keyframe", 0) == 0) {
+      size_t end = 0;
+      for (int word = 0; word < 15; ++word) end = line.find(' ', end + 1);
+      line.resize(end);
+    }
+    if (line.rfind("edge", 0) == 0)
+      line = line.substr(0, line.find(" tracked"));
+    older += line + "\n";
+  }
+  WriteFileAtomically(map_ + "/map.txt", older + ChecksumLine(older));
+  for (Keyframe& keyframe : saved.keyframes) {
+    keyframe.timing_covariance.setZero();
+  }
+  for (MapEdge& edge : saved.edges) edge.is_tracked = false;
+  EXPECT_TRUE(IsSameMap(LoadMap(map_), saved));
 }
 
 TEST_F(MapFolderTest, KeepsEveryLens) {
