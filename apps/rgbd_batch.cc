@@ -114,7 +114,6 @@ void CheckFlags() {
 
 // Values of the lists would replace those of the file in each run.
 void CheckSettings() {
-  if (FLAGS_settings.empty()) return;
   for (const TextLine& line : ReadTextTable(FLAGS_settings)) {
     const std::string flag = SplitText(line.words[0], '=')[0];
     for (const auto& [list, name, column, check] : BatchSettings()) {
@@ -221,7 +220,7 @@ int WriteSummary(const std::vector<BatchRun>& plan, const BatchFolder& folder,
 
 int Main() {
   CheckFlags();
-  CheckSettings();
+  if (!FLAGS_settings.empty()) CheckSettings();
   const BatchGrid grid = ParseGrid(
       {FLAGS_costs, FLAGS_losses, FLAGS_frontends, FLAGS_trackers, FLAGS_parts},
       FLAGS_repeats);

@@ -1,5 +1,6 @@
 #include "apps/results/cloud_preview.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <string>
