@@ -115,7 +115,8 @@ void CheckFlags() {
 // Values of the lists would replace those of the file in each run.
 void CheckSettings() {
   for (const TextLine& line : ReadTextTable(FLAGS_settings)) {
-    const std::string flag = SplitText(line.words[0], '=')[0];
+    std::string flag = SplitText(line.words[0], '=')[0];
+    if (flag.rfind("--", 0) != 0) flag = "-" + flag;  // gflags takes -loss, too
     for (const auto& [list, name, column, check] : BatchSettings()) {
       if (flag != std::string("--") + name) continue;
       throw InputError(FLAGS_settings, line.number,

@@ -76,9 +76,8 @@ void BindTrackedFrame(py::module_* module) {
         if (self.edges.empty()) return py::none();
         return ArrayFromMatrix(self.edges.front().covariance);
       },
-      "(6, 6), of the motion that gives the pose: that of the first edge; "
-      "None\n"
-      "if there is none");
+      "(6, 6), of the motion that gives the pose: that of the first edge;\n"
+      "None if there is none");
   property("edges", &TrackedFrame::edges,
            "list of RelativePose: the measured motions; the first gives the "
            "pose. If the\nreference changes to an earlier frame, a second one "

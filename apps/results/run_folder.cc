@@ -97,8 +97,7 @@ void RunFolder::Publish() {
          {kLast, "report.html", "errors.csv", "trajectory.txt", "frames.csv",
           "edges.csv", "config.flags", "cloud_preview.json",
           "mesh_preview.json", "slam.csv", "keyframes.csv", "graph.g2o",
-          "trajectory_online.txt", "trajectory_odometry.txt",
-          "calibration.html", "depth_noise.yaml"}) {
+          "trajectory_online.txt", "trajectory_odometry.txt"}) {
       fs::remove(path_ / name);
     }
     RemoveDebugImages(path_ / "debug");

@@ -30,8 +30,7 @@ struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
-  // The guess if there were too few matches or no usable step, or if
-  // degenerate.
+  // The guess if there are too few matches, no usable step, or if degenerate.
   Rigid3d cur_from_prev;
 
   // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small

@@ -98,6 +98,7 @@ template <typename M, typename D, typename T>
   }
 }
 
+// c = a x b.
 template <typename A, typename B, typename T>
 [[gnu::always_inline]] inline void Cross(const A* a, const B* b, T* c) {
   c[0] = a[1] * b[2] - a[2] * b[1];

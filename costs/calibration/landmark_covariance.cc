@@ -191,7 +191,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   // For poses that no landmark determines.
   known_before.diagonal().head(y_at).array() += 1e-9;
 
-  Eigen::MatrixXd last;
+  Eigen::MatrixXd last;  // columns of the inverse
   const auto invert = [&](double slope) {
     Eigen::MatrixXd H = slope * equations.hessian + known_before;
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(H);

@@ -41,6 +41,7 @@ class BagReader {
 
   const std::vector<BagTopic>& topics() const { return topics_; }
 
+  // Null if there is none of this name.
   const BagTopic* FindTopic(const std::string& name) const {
     return FindNamed(topics_, name);
   }

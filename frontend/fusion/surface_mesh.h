@@ -51,7 +51,7 @@ class TsdfVolume {
   uint64_t key(int index) const { return blocks_[index].first; }
   const Block& block(int index) const { return *blocks_[index].second; }
 
-  int Find(uint64_t key) const {
+  int Find(uint64_t key) const {  // -1: none
     const auto place = index_.find(key);
     return place == index_.end() ? -1 : place->second;
   }

@@ -116,7 +116,7 @@ constexpr float kGlyphHeight = 3.0f;
 
 float Clamp01(float x) { return std::min(std::max(x, 0.0f), 1.0f); }
 
-float Signed(uint32_t hash, int byte) {
+float Signed(uint32_t hash, int byte) {  // -1 to 1
   return static_cast<float>((hash >> (8 * byte)) & 0xffu) / 127.5f - 1.0f;
 }
 

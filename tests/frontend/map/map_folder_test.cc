@@ -15,7 +15,7 @@
 #include <future>
 #include <map>
 #include <random>
-#include <sstream>
+#include <regex>
 #include <thread>
 #include <tuple>
 
@@ -82,19 +82,11 @@ TEST_F(MapFolderTest, GivesBackWhatWasSaved) {
 TEST_F(MapFolderTest, ReadsMapsWithoutTheNewerWords) {
   KeyframeMap saved = NoiseMap(5, 0);
   SaveMap(map_, saved);
-  std::istringstream index(ReadTextFile(map_ + "/map.txt"));
-  std::string older, line;
-  while (std::getline(index, line)) {
-    if (line.rfind("checksum", 0) == 0) continue;
-    if (line.rfind("keyframe", 0) == 0) {
-      size_t end = 0;
-      for (int word = 0; word < 15; ++word) end = line.find(' ', end + 1);
-      line.resize(end);
-    }
-    if (line.rfind("edge", 0) == 0)
-      line = line.substr(0, line.find(" tracked"));
-    older += line + "\n";
-  }
+  const std::string index = ReadTextFile(map_ + "/map.txt");
+  std::string older = index.substr(0, index.find("checksum"));
+  older = std::regex_replace(
+      older, std::regex("(\nkeyframe( [^ \n]+){14})[^\n]*"), "$1");
+  older = std::regex_replace(older, std::regex(" tracked\n"), "\n");
   WriteFileAtomically(map_ + "/map.txt", older + ChecksumLine(older));
   for (Keyframe& keyframe : saved.keyframes) {
     keyframe.timing_covariance.setZero();
