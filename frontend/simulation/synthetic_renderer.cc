@@ -32,29 +32,30 @@ using Eigen::Vector2f;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr int kTileSize = 32;
+constexpr int kTileSize = SurfacePoints::kMost;
 // Faces extend this far (m) beyond their edges, against cracks by rounding.
 constexpr float kOverlap = 1e-4f;
 // Blur of the lens and of the colour filter mosaic (sigma, px).
 constexpr double kLensBlur = 0.6;
 
-// Where the ray (x, y, 1) meets a face at depth z (m), and the extent of a
-// pixel there. Without Eigen expressions: clang does not inline them with its
-// address sanitizer, where they took half the time of all tests.
-SurfacePoint Meet(const Matrix3f& face_from_ray, float x, float y, float z,
-                  const Vector2f& pixel) {
+// Where the rays (x, y, 1) of neighbouring pixels meet a face at depths z (m),
+// and the extent of a pixel there, in a loop that the compiler vectorises.
+void Meet(const Matrix3f& face_from_ray, const float* x, const float* y,
+          const float* z, const Vector2f& pixel, SurfacePoints* at) {
   const float* const h = face_from_ray.data();  // column by column
-  SurfacePoint at;
-  at.u = (h[0] * x + (h[3] * y + h[6])) * z;
-  at.v = (h[1] * x + (h[4] * y + h[7])) * z;
-  // The derivative of a quotient, times the size of the pixel.
-  const float u_by_x = (h[0] - at.u * h[2]) * z * pixel.x();
-  const float u_by_y = (h[3] - at.u * h[5]) * z * pixel.y();
-  const float v_by_x = (h[1] - at.v * h[2]) * z * pixel.x();
-  const float v_by_y = (h[4] - at.v * h[5]) * z * pixel.y();
-  at.footprint_u = std::sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
-  at.footprint_v = std::sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
-  return at;
+  for (int k = 0; k < at->size; ++k) {
+    const float u = (h[0] * x[k] + (h[3] * y[k] + h[6])) * z[k];
+    const float v = (h[1] * x[k] + (h[4] * y[k] + h[7])) * z[k];
+    // The derivative of a quotient, times the size of the pixel.
+    const float u_by_x = (h[0] - u * h[2]) * z[k] * pixel.x();
+    const float u_by_y = (h[3] - u * h[5]) * z[k] * pixel.y();
+    const float v_by_x = (h[1] - v * h[2]) * z[k] * pixel.x();
+    const float v_by_y = (h[4] - v * h[5]) * z[k] * pixel.y();
+    at->u[k] = u;
+    at->v[k] = v;
+    at->footprint_u[k] = std::sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
+    at->footprint_v[k] = std::sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
+  }
 }
 
 // The brightness of a surface in the light of the lamp and of the room.
@@ -136,11 +137,11 @@ void AddVisibleFaces(const Scene& scene, const Rigid3d& world_from_cam,
   }
 }
 
-// For each pixel of a tile, row by row: the inverse depth of the nearest face,
-// 0 if there is none, and its index.
+// For each pixel of a tile, row by row: the inverse depth of the nearest face
+// and its index; 0 and -1 if there is none.
 struct NearestFaces {
   std::array<float, kTileSize* kTileSize> inverse_depth = {};
-  std::array<int, kTileSize* kTileSize> index = {};
+  std::array<int, kTileSize * kTileSize> index;
 };
 
 // `range`: of the rays of the tile on the plane z = 1.
@@ -148,6 +149,7 @@ NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
                          const Eigen::AlignedBox2f& range,
                          const cv::Mat& rays_x, const cv::Mat& rays_y) {
   NearestFaces nearest;
+  nearest.index.fill(-1);
   for (int i = 0; i < static_cast<int>(faces.size()); ++i) {
     if (!faces[i].range.intersects(range)) continue;
     const Matrix3f h = faces[i].face_from_ray;
@@ -215,26 +217,31 @@ void Renderer::RenderTile(const std::vector<VisibleFace>& faces,
   const NearestFaces nearest = FindNearest(
       faces, tile.range, rays_x_(tile.pixels), rays_y_(tile.pixels));
   for (int row = 0; row < tile.pixels.height; ++row) {
-    for (int column = 0; column < tile.pixels.width; ++column) {
-      const int place = row * kTileSize + column;
-      if (nearest.inverse_depth[place] <= 0.0f) continue;
-      const float z = 1.0f / nearest.inverse_depth[place];
-      const VisibleFace& visible = faces[nearest.index[place]];
-      const cv::Point pixel = tile.pixels.tl() + cv::Point(column, row);
-      const SurfacePoint at =
-          Meet(visible.face_from_ray, rays_x_.at<float>(pixel),
-               rays_y_.at<float>(pixel), z, pixel_);
-      const Vector3f point(at.u, at.v, 0.0f);
-      const Material& material = visible.face->material;
-      cv::Vec3f color = Paint(material, visible.face->seed, at) *
-                        (255.0f * Brightness(visible.lamp - point));
-      if (material.gloss > 0.0f) {
-        const float light =
-            Highlight(visible.lamp - point, visible.camera - point);
-        color += cv::Vec3f::all(255.0f * material.gloss * light);
+    const int* index = nearest.index.data() + row * kTileSize;
+    const float* inverse_depth = nearest.inverse_depth.data() + row * kTileSize;
+    const cv::Point start = tile.pixels.tl() + cv::Point(0, row);
+    float* depth = &out->depth.at<float>(start);
+    cv::Vec3b* color = &out->color.at<cv::Vec3b>(start);
+    // Neighbours on the same face are painted together.
+    for (int first = 0, end = 0; first < tile.pixels.width; first = end) {
+      while (end < tile.pixels.width && index[end] == index[first]) ++end;
+      if (index[first] < 0) continue;
+      for (int k = first; k < end; ++k) depth[k] = 1.0f / inverse_depth[k];
+      const VisibleFace& visible = faces[index[first]];
+      const float gloss = 255.0f * visible.face->material.gloss;
+      SurfacePoints points;
+      points.size = end - first;
+      Meet(visible.face_from_ray, &rays_x_.at<float>(start) + first,
+           &rays_y_.at<float>(start) + first, depth + first, pixel_, &points);
+      Paint(visible.face->material, visible.face->seed, &points);
+      for (int k = 0; k < points.size; ++k) {
+        const Vector3f point(points.u[k], points.v[k], 0.0f);
+        const Vector3f lamp = visible.lamp - point;
+        float shine = 0.0f;
+        if (gloss > 0.0f) shine = Highlight(lamp, visible.camera - point);
+        color[first + k] = points.colors[k] * (255.0f * Brightness(lamp)) +
+                           cv::Vec3f::all(gloss * shine);
       }
-      out->color.at<cv::Vec3b>(pixel) = color;
-      out->depth.at<float>(pixel) = z;
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "frontend/simulation/synthetic_texture.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/util/vector_lanes.h"
 #include "frontend/simulation/synthetic_hash.h"
@@ -19,30 +20,13 @@ constexpr float kAmplitudeRatio = 0.8f;
 constexpr float kTurnCos = 0.8f;
 constexpr float kTurnSin = 0.6f;
 
-// All octaves of the grain at once, in the compiler's own vectors. With basic
-// arithmetic alone, the bits are the same with every instruction set.
-typedef float Floats __attribute__((vector_size(kOctaves * sizeof(float))));
-typedef int32_t Ints __attribute__((vector_size(kOctaves * sizeof(float))));
-typedef uint32_t Words __attribute__((vector_size(kOctaves * sizeof(float))));
-
-struct OctaveTable {
-  Floats cell, amplitude;
-  Words number;
-};
-
-OctaveTable MakeOctaves() {
-  OctaveTable table;
-  float amplitude = 1.0f;
-  float cell = kCoarsestCell;
-  for (int octave = 0; octave < kOctaves; ++octave) {
-    table.cell[octave] = cell;
-    table.amplitude[octave] = amplitude;
-    table.number[octave] = static_cast<uint32_t>(octave);
-    amplitude *= kAmplitudeRatio;
-    cell *= kCellRatio;
-  }
-  return table;
-}
+// Several pixels at once, in the compiler's own vectors. With basic arithmetic
+// alone, the bits are the same with every instruction set.
+constexpr int kLanes = 8;
+static_assert(SurfacePoints::kMost % kLanes == 0, "no vector reads beyond");
+typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
+typedef int32_t Ints __attribute__((vector_size(kLanes * sizeof(float))));
+typedef uint32_t Words __attribute__((vector_size(kLanes * sizeof(float))));
 
 // The lowest byte of the hash of each lattice cell, as -1..1.
 [[gnu::always_inline]] inline void Corner(const Words& cell, Floats* value) {
@@ -52,9 +36,9 @@ OctaveTable MakeOctaves() {
       __builtin_convertvector((Ints)(hash & 0xffu), Floats) / 127.5f - 1.0f;
 }
 
-// Value noise in -1..1 at a place in a lattice with cells of size 1.
+// Value noise in -1..1 at places in a lattice with cells of size 1.
 [[gnu::always_inline]] inline void SmoothNoise(const Floats& x, const Floats& y,
-                                               const Words& seed, Floats* sum) {
+                                               uint32_t seed, Floats* noise) {
   Ints i = __builtin_convertvector(x, Ints);
   Ints j = __builtin_convertvector(y, Ints);
   i += x < __builtin_convertvector(i, Floats);  // rounds down; true is -1
@@ -71,41 +55,44 @@ OctaveTable MakeOctaves() {
   Corner(cell + kHashX + kHashY, &d);
   const Floats top = a + (b - a) * wx;
   const Floats bottom = c + (d - c) * wx;
-  *sum = top + (bottom - top) * wy;
+  *noise = top + (bottom - top) * wy;
 }
 
-[[gnu::always_inline]] inline float SumOfOctaves(float u, float v,
-                                                 float footprint,
-                                                 uint32_t seed) {
-  static const OctaveTable octaves = MakeOctaves();
-  Floats x, y;
-  float turned_x = u;
-  float turned_y = v;
-  for (int octave = 0; octave < kOctaves; ++octave) {
-    x[octave] = turned_x;
-    y[octave] = turned_y;
-    const float turned = kTurnCos * turned_x - kTurnSin * turned_y;
-    turned_y = kTurnSin * turned_x + kTurnCos * turned_y;
-    turned_x = turned;
+[[gnu::always_inline]] inline SurfacePoints::Values SumOfOctaves(
+    const SurfacePoints& p, uint32_t seed) {
+  SurfacePoints::Values sums = {};
+  for (int k = 0; k < p.size; k += kLanes) {
+    Floats x, y, width, height, sum = {};
+    std::memcpy(&x, &p.u[k], sizeof(x));
+    std::memcpy(&y, &p.v[k], sizeof(y));
+    std::memcpy(&width, &p.footprint_u[k], sizeof(width));
+    std::memcpy(&height, &p.footprint_v[k], sizeof(height));
+    const Floats footprint = width < height ? height : width;
+    float amplitude = 1.0f, cell = kCoarsestCell;
+    for (uint32_t octave = 0; octave < kOctaves; ++octave) {
+      // An octave vanishes when its cells are smaller than pixels.
+      Floats visible = cell / footprint - 1.0f;
+      visible = visible < 0.0f ? Floats{} : visible;
+      visible = visible > 1.0f ? Floats{} + 1.0f : visible;
+      Floats noise;
+      SmoothNoise(x / cell, y / cell, seed + octave, &noise);
+      sum += visible * amplitude * noise;
+      amplitude *= kAmplitudeRatio;
+      cell *= kCellRatio;
+      const Floats turned = kTurnCos * x - kTurnSin * y;
+      y = kTurnSin * x + kTurnCos * y;
+      x = turned;
+    }
+    std::memcpy(&sums[k], &sum, sizeof(sum));
   }
-  Floats noise;
-  SmoothNoise(x / octaves.cell, y / octaves.cell, seed + octaves.number,
-              &noise);
-  // An octave vanishes when its cells are smaller than pixels.
-  Floats visible = octaves.cell / footprint - 1.0f;
-  visible = visible < 0.0f ? Floats{} : visible;
-  visible = visible > 1.0f ? Floats{} + 1.0f : visible;
-  noise *= visible * octaves.amplitude;
-  float sum = 0.0f;
-  for (int octave = 0; octave < kOctaves; ++octave) sum += noise[octave];
-  return sum;
+  return sums;
 }
 
 #if defined(__x86_64__)
 // Without FMA, which rounds once instead of twice.
-[[gnu::target("avx2")]] float SumOfOctavesAvx2(float u, float v,
-                                               float footprint, uint32_t seed) {
-  return SumOfOctaves(u, v, footprint, seed);
+[[gnu::target("avx2")]] SurfacePoints::Values SumOfOctavesAvx2(
+    const SurfacePoints& points, uint32_t seed) {
+  return SumOfOctaves(points, seed);
 }
 #endif
 
@@ -139,13 +126,13 @@ void ForCellsUnderPixel(float x, float y, float footprint_x, float footprint_y,
   }
 }
 
-cv::Vec3f Tiles(const Material& material, const SurfacePoint& p,
+cv::Vec3f Tiles(const Material& material, const SurfacePoints& p, int k,
                 uint32_t seed) {
   cv::Vec3f shift(0, 0, 0);
   ForCellsUnderPixel(
-      p.u / material.tile[0], p.v / material.tile[1],
-      p.footprint_u / material.tile[0], p.footprint_v / material.tile[1], seed,
-      [&](uint32_t hash, float weight) {
+      p.u[k] / material.tile[0], p.v[k] / material.tile[1],
+      p.footprint_u[k] / material.tile[0], p.footprint_v[k] / material.tile[1],
+      seed, [&](uint32_t hash, float weight) {
         const float gray = material.tile_contrast * Signed(hash, 3);
         for (int c = 0; c < 3; ++c) {
           shift[c] += weight * (gray + material.tile_tint * Signed(hash, c));
@@ -155,15 +142,16 @@ cv::Vec3f Tiles(const Material& material, const SurfacePoint& p,
 }
 
 // The share of the pixel that is covered by ink of words, 0..1.
-float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
+float Ink(const Material& material, const SurfacePoints& p, int k,
+          uint32_t seed) {
   const float block = material.glyph;
   // 0 when the shortest wavelength, two blocks, is below two pixels.
   const float visible =
-      Clamp01(block / std::max(p.footprint_u, p.footprint_v) - 1.0f);
-  const float x = p.u / block;
-  const float y = p.v / block;
-  const float width = p.footprint_u / block;
-  const float height = p.footprint_v / block;
+      Clamp01(block / std::max(p.footprint_u[k], p.footprint_v[k]) - 1.0f);
+  const float x = p.u[k] / block;
+  const float y = p.v[k] / block;
+  const float width = p.footprint_u[k] / block;
+  const float height = p.footprint_v[k] / block;
   float word = 0.0f;
   ForCellsUnderPixel(x / kWordLength, y / kLineHeight, width / kWordLength,
                      height / kLineHeight, seed,
@@ -185,30 +173,29 @@ float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
 
 }  // namespace
 
-float Grain(float u, float v, float footprint, uint32_t seed) {
+SurfacePoints::Values Grain(const SurfacePoints& points, uint32_t seed) {
 #if defined(__x86_64__)
   if (packed::ChosenInstructionSet() != packed::InstructionSet::kBaseline) {
-    return SumOfOctavesAvx2(u, v, footprint, seed);
+    return SumOfOctavesAvx2(points, seed);
   }
 #endif
-  return SumOfOctaves(u, v, footprint, seed);
+  return SumOfOctaves(points, seed);
 }
 
-cv::Vec3f Paint(const Material& material, uint32_t seed,
-                const SurfacePoint& point) {
-  const float extent = std::max(point.footprint_u, point.footprint_v);
-  const float grain =
-      1.0f + material.grain * Grain(point.u, point.v, extent, seed);
-  cv::Vec3f color = material.color;
-  if (material.tile_contrast > 0.0f || material.tile_tint > 0.0f) {
-    color += Tiles(material, point, seed + 0x100u);
+void Paint(const Material& material, uint32_t seed, SurfacePoints* points) {
+  SurfacePoints::Values grain = {};
+  if (material.grain != 0.0f) grain = Grain(*points, seed);
+  for (int k = 0; k < points->size; ++k) {
+    cv::Vec3f& color = points->colors[k] = material.color;
+    if (material.tile_contrast > 0.0f || material.tile_tint > 0.0f) {
+      color += Tiles(material, *points, k, seed + 0x100u);
+    }
+    color *= 1.0f + material.grain * grain[k];
+    if (material.glyph_density > 0.0f) {
+      const float paper = 1.0f - Ink(material, *points, k, seed + 0x200u);
+      color *= 0.15f + 0.85f * paper;
+    }
   }
-  color *= grain;
-  if (material.glyph_density > 0.0f) {
-    const float paper = 1.0f - Ink(material, point, seed + 0x200u);
-    color *= 0.15f + 0.85f * paper;
-  }
-  return color;
 }
 
 }  // namespace rgbd_pose

@@ -1,13 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core.hpp>
 
 namespace rgbd_pose {
-
-// The grain of a surface at (u, v) (m) for a pixel of extent `footprint` (m): a
-// sum of octaves of value noise, about -3..3, the same on every machine.
-float Grain(float u, float v, float footprint, uint32_t seed);
 
 // A procedural surface: colour, grain (several octaves of noise), tiles
 // (rectangles of random colour) and glyphs (words of random blocks). Lengths
@@ -47,18 +44,26 @@ inline const Material kBooks = {
 inline const Material kScreen = {
     {0.34f, 0.28f, 0.24f}, 0.12f, {0.11f, 0.07f}, 0.12f, 0.10f, 0.006f, 0.45f};
 
-// Where a pixel meets a surface, in the surface's own axes (m).
-struct SurfacePoint {
-  float u = 0.0f;
-  float v = 0.0f;
-  float footprint_u = 0.0f;  // extent of the pixel along u and v
-  float footprint_v = 0.0f;
+// Where `size` pixels meet a surface, in the surface's own axes (m).
+struct SurfacePoints {
+  static constexpr int kMost = 32;
+  using Values = std::array<float, kMost>;
+
+  int size = 0;
+  Values u = {};
+  Values v = {};
+  Values footprint_u = {};  // extent of a pixel along u and v
+  Values footprint_v = {};
+  std::array<cv::Vec3f, kMost> colors;  // made by Paint: blue, green, red
 };
 
-// The colour (blue, green, red, about 0..1) of a surface, averaged over a
-// pixel. Steps are box-filtered and octaves finer than the pixel fade out: a
-// surface looks the same from near and far, without aliasing.
-cv::Vec3f Paint(const Material& material, uint32_t seed,
-                const SurfacePoint& point);
+// The grain of a surface at each point: a sum of octaves of value noise, about
+// -3..3, the same on every machine.
+SurfacePoints::Values Grain(const SurfacePoints& points, uint32_t seed);
+
+// The colours (about 0..1) of a surface, averaged over each pixel. Steps are
+// box-filtered and octaves finer than the pixel fade out: a surface looks the
+// same from near and far, without aliasing.
+void Paint(const Material& material, uint32_t seed, SurfacePoints* points);
 
 }  // namespace rgbd_pose

@@ -1,5 +1,5 @@
-// The grain of simulated surfaces: eight octaves computed together equal
-// octaves computed one by one.
+// The grain of simulated surfaces: of several points together it equals that of
+// points and octaves one by one.
 
 #include "frontend/simulation/synthetic_texture.h"
 
@@ -50,11 +50,23 @@ void ExpectOctaves() {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> place(-20.0f, 20.0f);
   std::uniform_real_distribution<float> exponent(-4.0f, 0.0f);
-  for (int i = 0; i < 2000; ++i) {
-    const float u = place(random), v = place(random);
-    const float footprint = std::pow(10.0f, exponent(random));
-    EXPECT_EQ(Grain(u, v, footprint, i), OctaveByOctave(u, v, footprint, i))
-        << u << " " << v << " " << footprint;
+  for (uint32_t seed = 0; seed < 100; ++seed) {
+    SurfacePoints points;
+    points.size = 1 + static_cast<int>(seed) % SurfacePoints::kMost;
+    for (int k = 0; k < points.size; ++k) {
+      points.u[k] = place(random);
+      points.v[k] = place(random);
+      points.footprint_u[k] = std::pow(10.0f, exponent(random));
+      points.footprint_v[k] = std::pow(10.0f, exponent(random));
+    }
+    const SurfacePoints::Values grain = Grain(points, seed);
+    for (int k = 0; k < points.size; ++k) {
+      const float u = points.u[k], v = points.v[k];
+      const float footprint =
+          std::max(points.footprint_u[k], points.footprint_v[k]);
+      EXPECT_EQ(grain[k], OctaveByOctave(u, v, footprint, seed))
+          << u << " " << v << " " << footprint;
+    }
   }
 }
 
