@@ -54,19 +54,20 @@ inline constexpr double kRounding = 2e-14;
 // H = D V diag(l) V^T D with some l = 0; D^2 is the diagonal of H, so units do
 // not matter. Where l > 0, J = diag(sqrt l) V^T D, r = diag(1/sqrt l) V^T D^-1
 // g. In the null space of H, g has no component and the rows are 0, so
-// ceres::Covariance sees the rank. Takes H[K][K], g[K], r[K] and J[K][K]. Not a
-// template over K <= 12: the solver takes long to compile and is rarely needed.
-inline void FactorSingular(int K, const double* hessian, const double* gradient,
-                           double* r, double* J) {
-  Factorable<12> scaled = Eigen::Map<const Factorable<12>>(hessian, K, K);
-  double D[12];
+// ceres::Covariance sees the rank. Takes H[K][K], g[K], r[K] and J[K][K]. One
+// template for all K <= kMost: the solver takes long to compile.
+template <int kMost = 12>
+void FactorSingular(int K, const double* hessian, const double* gradient,
+                    double* r, double* J) {
+  using Matrix = Factorable<kMost>;
+  Matrix scaled = Eigen::Map<const Matrix>(hessian, K, K);
+  double D[kMost];
   for (int i = 0; i < K; ++i) {
     D[i] = scaled(i, i) > 0.0 ? std::sqrt(scaled(i, i)) : 1.0;
   }
   for (int i = 0; i < K * K; ++i) scaled(i) /= D[i / K] * D[i % K];
-  const Eigen::SelfAdjointEigenSolver<Factorable<12>> eigen(scaled);
-  const double smallest =
-      kRounding * std::max(0.0, eigen.eigenvalues().maxCoeff());
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled);
+  const double smallest = kRounding * std::max(0.0, eigen.eigenvalues()[K - 1]);
   for (int i = 0; i < K; ++i) {
     const double value = eigen.eigenvalues()[i];
     if (!(value > smallest)) continue;
