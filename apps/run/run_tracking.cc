@@ -239,7 +239,7 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   options.voxel = settings.output.voxel;
   options.threads = threads;
   for (const auto& [file, fuse] :
-       {std::pair(cloud, ExportCloud), std::pair(mesh, ExportMesh)}) {
+       {std::pair(cloud, &ExportCloud), std::pair(mesh, &ExportMesh)}) {
     if (file.empty() || results.trajectory.empty()) continue;
     options.output = file;
     try {
