@@ -55,7 +55,7 @@ class NumberedDataset final : public Dataset {
  public:
   NumberedDataset(const NumberedLayout& layout, const SourceOptions& options)
       : layout_(layout),
-        folder_{options.path, FindFrames(options.path)},
+        folder_(FindFrames(options.path)),
         assembly_(ChooseSetup(options), options.keep_color) {}
 
   int size() const override { return static_cast<int>(folder_.frames.size()); }
@@ -70,37 +70,40 @@ class NumberedDataset final : public Dataset {
   const RgbdCamera& camera() const override { return assembly_.camera(); }
   Trajectory ground_truth() const override {
     Trajectory truth;
-    for (const auto& [number, pose] : layout_.poses(folder_)) {
-      truth.push_back({number / kNumberedRate, pose});
+    const NumberedPoses poses = layout_.poses(folder_);
+    for (int i = 0; i < size(); ++i) {
+      const auto pose = poses.find(folder_.frames[i].number);
+      if (pose != poses.end()) truth.push_back({timestamp(i), pose->second});
     }
     return truth;
   }
-  int unmatched_color() const override { return unmatched_color_; }
+  int unmatched_color() const override {
+    return static_cast<int>(folder_.numbers.size() - folder_.frames.size());
+  }
 
  private:
-  std::vector<NumberedFrame> FindFrames(const std::string& folder) {
+  NumberedFolder FindFrames(const std::string& folder) const {
     const auto color = NumberedPaths(folder, layout_.color);
     const auto depth = NumberedPaths(folder, layout_.depth);
     if (color.empty()) {
       throw InputError(folder + ": has no colour images such as " +
                        Examples(layout_.color) + "; expected: " + layout_.what);
     }
-    std::vector<NumberedFrame> frames;
+    NumberedFolder found;
+    found.path = folder;
     for (const auto& [number, path] : color) {
+      found.numbers.push_back(number);
       const auto match = depth.find(number);
-      if (match == depth.end()) {
-        ++unmatched_color_;
-      } else {
-        frames.push_back({number, path, match->second});
-      }
+      if (match == depth.end()) continue;
+      found.frames.push_back({number, path, match->second});
     }
-    if (frames.empty()) {
+    if (found.frames.empty()) {
       throw InputError(folder + ": none of its " +
                        std::to_string(color.size()) +
                        " colour images has a depth image " +
                        Examples(layout_.depth) + " of the same number");
     }
-    return frames;
+    return found;
   }
 
   CameraSetup ChooseSetup(const SourceOptions& options) const {
@@ -114,7 +117,6 @@ class NumberedDataset final : public Dataset {
   }
 
   const NumberedLayout& layout_;
-  int unmatched_color_ = 0;
   NumberedFolder folder_;
   FrameAssembly assembly_;
 };

@@ -1,5 +1,6 @@
 #include "frontend/sources/numbered_layouts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
@@ -14,11 +15,6 @@ namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The camera of ICL-NUIM's renderer, with the y axis of its images down.
-std::optional<CameraSetup> IclCamera(const NumberedFolder&) {
-  return CameraSetup(Camera{640, 480, 481.2, 480.0});
-}
 
 // intrinsic.json, or the file name of Open3D's recorder: width, height and
 // intrinsic_matrix, column by column. JSON is valid YAML.
@@ -158,48 +154,39 @@ NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
   return poses;
 }
 
-// traj.txt: the 16 numbers of each frame, in order, a frame per line (Replica).
-NumberedPoses ReadPoseLines(const NumberedFolder& folder) {
-  const std::string path = (folder.path / "traj.txt").string();
-  NumberedPoses poses;
-  if (!PathExists(path)) return poses;
-  size_t i = 0;
-  for (const TextLine& line : ReadTextTable(path)) {
-    if (i == folder.frames.size()) break;  // the rest are of missing frames
-    if (line.words.size() != 16) {
-      throw InputError(path, line.number,
-                       "needs the 16 numbers of a 4 x 4 matrix, has " +
-                           std::to_string(line.words.size()));
-    }
-    std::vector<double> matrix;
-    AddNumbers(line, path, &matrix);
-    AddPose(matrix, folder.frames[i++].number, path, line.number, &poses);
-  }
-  return poses;
+// The number of the image that the i-th of `count` poses belongs to: the i-th
+// image if there are as many. Otherwise images are missing, and i counts from
+// their first number, 0 or 1.
+int NumberOf(const NumberedFolder& folder, size_t i, size_t count) {
+  const std::vector<int>& numbers = folder.numbers;
+  if (count == numbers.size() && i < count) return numbers[i];
+  return static_cast<int>(i) + (numbers.front() == 1 ? 1 : 0);
 }
 
-// trajectory.log: for each frame, in order, a line of three integers and 4 rows
-// of 4 numbers (Redwood, Open3D).
-NumberedPoses ReadPoseLog(const NumberedFolder& folder) {
-  const std::string path = (folder.path / "trajectory.log").string();
+// A file with the poses of all frames, in order: each has a head line of `head`
+// words, unless this is 0, and its matrix in `rows` rows.
+NumberedPoses ReadPoseTable(const NumberedFolder& folder, const char* name,
+                            size_t head, size_t rows) {
+  const std::string path = (folder.path / name).string();
   NumberedPoses poses;
   if (!PathExists(path)) return poses;
   const std::vector<TextLine> lines = ReadTextTable(path);
-  for (size_t i = 0; i < folder.frames.size() && 5 * i < lines.size(); ++i) {
-    const TextLine& head = lines[5 * i];
-    if (head.words.size() != 3 || 5 * i + 4 >= lines.size()) {
-      throw InputError(path, head.number,
-                       "needs three integers and then 4 rows of 4 numbers");
-    }
+  const size_t first = head > 0 ? 1 : 0, each = first + rows;
+  for (size_t i = 0; i < lines.size(); i += each) {
     std::vector<double> matrix;
-    for (int row = 1; row <= 4; ++row) {
-      const TextLine& line = lines[5 * i + row];
-      if (line.words.size() != 4) {
-        throw InputError(path, line.number, "needs a row of 4 numbers");
+    for (size_t k = 0; k < each; ++k) {
+      const TextLine& line = lines[std::min(i + k, lines.size() - 1)];
+      const size_t expected = k < first ? head : 16 / rows;
+      if (i + k >= lines.size() || line.words.size() != expected) {
+        throw InputError(path, line.number,
+                         Format("needs %zu numbers here (lines for each pose: "
+                                "%zu)",
+                                expected, each));
       }
-      AddNumbers(line, path, &matrix);
+      if (k >= first) AddNumbers(line, path, &matrix);
     }
-    AddPose(matrix, folder.frames[i].number, path, head.number, &poses);
+    AddPose(matrix, NumberOf(folder, i / each, lines.size() / each), path,
+            lines[i].number, &poses);
   }
   return poses;
 }
@@ -215,13 +202,13 @@ NumberedPoses ReadMirroredPoses(const NumberedFolder& folder) {
     if (path.extension() != ".freiburg" || path.stem().extension() != ".gt") {
       continue;
     }
-    for (const StampedPose& pose : ReadTrajectory(path.string())) {
+    const Trajectory mirrored = ReadTrajectory(path.string());
+    for (const StampedPose& pose : mirrored) {
       // M T M with M = diag(1, -1, 1) has a proper rotation again.
       const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
       const Eigen::Vector3d& t = pose.world_from_cam.translation;
       const auto place = static_cast<size_t>(std::lround(pose.timestamp)) - 1;
-      if (place >= folder.frames.size()) continue;
-      poses[folder.frames[place].number] =
+      poses[NumberOf(folder, place, mirrored.size())] =
           Rigid3d(Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()),
                   {t.x(), -t.y(), t.z()});
     }
@@ -258,7 +245,9 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {"results/frame*.jpg", "results/frame*.png"},
        {"results/depth*.png"},
        6553.5,
-       ReadPoseLines,
+       [](const NumberedFolder& folder) {
+         return ReadPoseTable(folder, "traj.txt", 0, 1);
+       },
        ReplicaCamera},
       {"icl_nuim",
        "ICL-NUIM in TUM's PNG files (rgb/0.png, depth/0.png, "
@@ -267,7 +256,10 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {"depth/*.png"},
        5000.0,
        ReadMirroredPoses,
-       IclCamera,
+       // Of ICL-NUIM's renderer, with the y axis of its images down.
+       [](const NumberedFolder&) {
+         return std::optional(CameraSetup(Camera{640, 480, 481.2, 480.0}));
+       },
        "associations.txt"},
       {"open3d",
        "Open3D, Redwood (color/, rgb/ or image/, and depth/ with numbered "
@@ -276,7 +268,9 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
         "image/*.png"},
        {"depth/*.png"},
        1000.0,
-       ReadPoseLog,
+       [](const NumberedFolder& folder) {
+         return ReadPoseTable(folder, "trajectory.log", 3, 4);
+       },
        Open3dCamera},
   };
   return layouts;

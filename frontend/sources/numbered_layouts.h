@@ -21,9 +21,10 @@ struct NumberedFrame {
 struct NumberedFolder {
   std::filesystem::path path;
   std::vector<NumberedFrame> frames;  // by number
+  std::vector<int> numbers;           // of all colour images, in order
 };
 
-// The poses world_from_cam of frames by their numbers; some may be missing.
+// The poses world_from_cam of images by their numbers: some, or too many.
 using NumberedPoses = std::map<int, Rigid3d>;
 
 // A layout whose images are numbered and have no time stamps.

@@ -20,7 +20,7 @@ FUZZ_TARGET(numbered_camera) {
       SourceOptions options;
       options.path = folder.path();
       const CameraSetup setup = ChooseCamera(
-          options, layout.camera({folder.path(), {NumberedFrame()}}));
+          options, layout.camera({folder.path(), {NumberedFrame()}, {0}}));
       Require(setup.camera.Check().empty(), "a camera that can be used");
     });
   }

@@ -16,10 +16,10 @@ FUZZ_TARGET(numbered_poses) {
   }
   for (const NumberedLayout& layout : NumberedLayouts()) {
     MayRefuse([&] {
-      const NumberedFolder frames = {folder.path(),
-                                     {{1, "", ""}, {2, "", ""}, {3, "", ""}}};
+      const NumberedFolder frames = {
+          folder.path(), {{1, "", ""}, {2, "", ""}, {3, "", ""}}, {1, 2, 3}};
       for (const auto& [number, pose] : layout.poses(frames)) {
-        Require(number >= 1 && number <= 3, "a number that was asked for");
+        Require(number >= 1, "a number that an image can have");
         Require(pose.IsFinite(), "a pose that can be used");
       }
     });

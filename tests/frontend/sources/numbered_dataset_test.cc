@@ -176,6 +176,18 @@ TEST_F(NumberedDatasetTest, ReadsReplica) {
   SourceOptions options = Options();
   options.path = folder_ / "room0";
   ExpectPoses(*ExpectRead("replica", options, 6553.5));
+
+  // Poses belong to images by number, not by place among those that are left.
+  fs::remove(folder_ / ("room0/results/depth" + Padded(0) + ".png"));
+  Trajectory truth = OpenSource("auto", options)->ground_truth();
+  ASSERT_EQ(truth.size(), kFrames - 1u);
+  ExpectPose(truth[0].world_from_cam, 1);
+  for (int k = 0; k + 1 < kFrames; ++k) {
+    fs::remove(folder_ / ("room0/results/frame" + Padded(k) + ".jpg"));
+  }
+  truth = OpenSource("auto", options)->ground_truth();
+  ASSERT_EQ(truth.size(), 1u);
+  ExpectPose(truth[0].world_from_cam, kFrames - 1);
 }
 
 TEST_F(NumberedDatasetTest, ReadsOpen3d) {
