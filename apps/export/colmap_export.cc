@@ -73,7 +73,7 @@ std::string PackPoints(const std::vector<ColoredPoint>& points) {
 }  // namespace
 
 std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
-  OutputFolder folder(options.output, {"images", "sparse"}, options.overwrite);
+  OutputFolder folder(options.output, options.overwrite);
   const ExportedViews images =
       WriteViewImages(run, options, folder.MakeFolder("images"));
   const std::filesystem::path model = folder.MakeFolder("sparse/0");

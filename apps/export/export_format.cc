@@ -1,9 +1,11 @@
 #include "apps/export/export_format.h"
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <system_error>
 
 #include "core/util/format.h"
+#include "core/util/text_file.h"
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/undistorter.h"
@@ -27,6 +29,20 @@ cv::Mat InMillimetres(const Frame& frame) {
                               const std::error_code& error) {
   throw InputError("--output: " + path.string() + " cannot be created (" +
                    error.message() + ")");
+}
+
+// In an exported folder, the names of all its other files, one in a line.
+constexpr char kContent[] = ".exported_files";
+
+// All files in a folder and below, relative to it.
+std::vector<std::string> FilesIn(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory()) continue;
+    files.push_back(entry.path().lexically_relative(folder).string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace
@@ -78,48 +94,49 @@ ExportedViews WriteViewImages(const FinishedRun& run,
   });
 }
 
-OutputFolder::OutputFolder(const std::string& path,
-                           const std::set<std::string>& entries, bool overwrite)
-    : path_(fs::weakly_canonical(path)) {
-  if (!path_.has_filename()) path_ = path_.parent_path();
-  staging_dir_ = path_.string() + ".partial";
+OutputFolder::OutputFolder(const std::string& path, bool overwrite)
+    : path_((fs::weakly_canonical(path) / "").parent_path()),
+      replaced_dir_(path_.string() + ".replaced_by_export"),
+      staging_(path_.string() + ".partial", "--output: " + path) {
   std::error_code error;
+  // Left by a killed export: without a new folder, the old one returns.
+  fs::rename(replaced_dir_, path_, error);
+  fs::remove_all(replaced_dir_, error);
   if (fs::exists(path_) && !fs::is_directory(path_)) {
     throw InputError("--output: " + path + " is a file; a folder is needed");
   }
-  if (!overwrite && fs::is_directory(path_) && !fs::is_empty(path_)) {
+  if (!fs::exists(path_)) return;
+  if (!overwrite && !fs::is_empty(path_)) {
     throw InputError("--output: " + path +
                      " is not empty; use --overwrite to replace it");
   }
-  for (const auto& entry : fs::directory_iterator(path_, error)) {
-    const std::string name = entry.path().filename();
-    if (entries.count(name) == 0) {
-      throw InputError("--output: " + path + " contains other files, such as " +
-                       name + "; choose another folder");
-    }
+  std::vector<std::string> ours;  // sorted
+  if (IsFile(path_ / kContent)) {
+    ours = SplitText(ReadTextFile((path_ / kContent).string()), '\n');
   }
-  fs::remove_all(staging_dir_, error);  // left by a killed export
-  fs::create_directories(staging_dir_, error);
-  if (error) FailToWrite(path, error);
-}
-
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  fs::remove_all(staging_dir_, ignored);
+  for (const std::string& name : FilesIn(path_)) {
+    if (name == kContent || std::binary_search(ours.begin(), ours.end(), name))
+      continue;
+    throw InputError("--output: " + path + " contains other files, such as " +
+                     name + "; choose another folder");
+  }
 }
 
 fs::path OutputFolder::MakeFolder(const std::string& name) const {
   std::error_code error;
-  fs::create_directories(staging_dir_ / name, error);
-  if (error) FailToWrite(staging_dir_ / name, error);
-  return staging_dir_ / name;
+  fs::create_directories(staging_dir() / name, error);
+  if (error) FailToWrite(staging_dir() / name, error);
+  return staging_dir() / name;
 }
 
 void OutputFolder::Publish() {
+  WriteFileAtomically((staging_dir() / kContent).string(),
+                      Join(FilesIn(staging_dir()), "\n"));
   std::error_code error;
-  fs::remove_all(path_, error);
-  fs::rename(staging_dir_, path_, error);
+  if (fs::exists(path_)) fs::rename(path_, replaced_dir_, error);
+  if (!error) fs::rename(staging_dir(), path_, error);
   if (error) FailToWrite(path_, error);
+  fs::remove_all(replaced_dir_, error);
 }
 
 }  // namespace rgbd_pose

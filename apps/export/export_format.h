@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "apps/results/run_output.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
+#include "core/util/locked_folder.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 #include "frontend/fusion/cloud_fusion.h"
@@ -129,28 +129,22 @@ Fusion FusionOf(const Camera& camera, const FinishedRun& run,
 // A folder that is written next to its place and moved there when complete.
 class OutputFolder {
  public:
-  // `entries` are the names of everything that will be in the folder. Throws
-  // InputError if the folder cannot be created, or if a non-empty one exists
-  // that must not be overwritten or holds other files.
-  OutputFolder(const std::string& path, const std::set<std::string>& entries,
-               bool overwrite);
-
-  // Removes everything that was not published.
-  ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
+  // Throws InputError if the folder cannot be created, is in use, or is not
+  // empty: then `overwrite` must be set and an export have written all in it.
+  OutputFolder(const std::string& path, bool overwrite);
 
   // Creates a folder inside the staging folder and returns its current path.
   std::filesystem::path MakeFolder(const std::string& name) const;
 
-  const std::filesystem::path& staging_dir() const { return staging_dir_; }
+  const std::filesystem::path& staging_dir() const { return staging_.path(); }
 
-  // Moves the folder to its place.
+  // Moves the folder to its place, with a list of its files.
   void Publish();
 
  private:
-  std::filesystem::path path_;
-  std::filesystem::path staging_dir_;
+  const std::filesystem::path path_;
+  const std::filesystem::path replaced_dir_;  // where an old folder waits
+  const LockedFolder staging_;
 };
 
 }  // namespace rgbd_pose

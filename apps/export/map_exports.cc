@@ -55,7 +55,7 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
   const std::unique_ptr<FrameSource> source = OpenRecording(run);
   CloudFusion cloud(
       FusionOf<FusionOptions>(source->camera().camera, run, options));
-  RequireWritable(options.output);
+  RequireCloudFile(options.output);
   ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
     cloud.Add(frame, run.trajectory[view].world_from_cam);
   });

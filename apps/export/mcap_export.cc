@@ -234,12 +234,6 @@ Json PointCloud(const std::vector<ColoredPoint>& points) {
           {"data", Base64(bytes)}};
 }
 
-std::string Jpeg(const cv::Mat& image) {
-  std::vector<uint8_t> bytes;
-  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 90});
-  return {bytes.begin(), bytes.end()};
-}
-
 // The poses of the path that are keyframes of the run's map, if it has one.
 Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
   const std::filesystem::path file =
@@ -272,7 +266,9 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
   std::map<double, std::string> images;  // by time
   const ExportedViews views =
       ReadImages(run, options, [&](const Frame& frame, int view) {
-        images[run.trajectory[view].timestamp] = Jpeg(frame.color);
+        std::vector<uint8_t> jpeg;
+        cv::imencode(".jpg", frame.color, jpeg, {cv::IMWRITE_JPEG_QUALITY, 90});
+        images[run.trajectory[view].timestamp] = {jpeg.begin(), jpeg.end()};
       });
 
   McapWriter file;

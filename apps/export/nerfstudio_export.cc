@@ -65,9 +65,7 @@ nlohmann::json Transforms(const FinishedRun& run, const ExportedViews& images) {
 
 std::string ExportNerfstudio(const FinishedRun& run,
                              const ExportOptions& options) {
-  OutputFolder folder(options.output,
-                      {"images", "depth", "points.ply", "transforms.json"},
-                      options.overwrite);
+  OutputFolder folder(options.output, options.overwrite);
   const ExportedViews images = WriteViewImages(
       run, options, folder.MakeFolder("images"), folder.MakeFolder("depth"));
   WritePly(folder.staging_dir() / "points.ply", images.cloud);

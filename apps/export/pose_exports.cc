@@ -41,8 +41,7 @@ std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
 
 // One line per pose, the upper rows of world_from_cam; times have a file.
 std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
-  OutputFolder folder(options.output, {"poses.txt", "times.txt"},
-                      options.overwrite);
+  OutputFolder folder(options.output, options.overwrite);
   std::string poses, times;
   for (const StampedPose& pose : run.trajectory) {
     const Eigen::Matrix3d R = pose.world_from_cam.rotation.toRotationMatrix();

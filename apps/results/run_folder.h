@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/util/locked_folder.h"
+
 namespace rgbd_pose {
 
 // The folder for the results of a run. Files are first written to a staging
@@ -19,7 +21,7 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 
   // The folder for files that are not yet published.
-  const std::filesystem::path& staging_dir() const { return staging_dir_; }
+  const std::filesystem::path& staging_dir() const { return staging_.path(); }
 
   // Writes a file into the staging folder. Throws InputError.
   void WriteFile(const char* name, const std::string& content) const;
@@ -30,9 +32,8 @@ class RunFolder {
 
  private:
   const std::filesystem::path path_;
-  const std::filesystem::path staging_dir_;
-  bool is_new_ = false;
-  int lock_ = -1;
+  const bool is_new_;
+  const LockedFolder staging_;
 };
 
 }  // namespace rgbd_pose

@@ -12,6 +12,7 @@
 #include "core/evaluation/association.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/locked_folder.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/image_file.h"
@@ -31,7 +32,7 @@ double DepthStamp(const Frame& frame) {
 }
 
 std::string ImagePath(const std::string& kind, double timestamp) {
-  return kind + "/" + FixedNumber(timestamp, 6) + ".png";
+  return kind + Format("/%.6f.png", timestamp);
 }
 
 void WritePng(const fs::path& path, const cv::Mat& image) {
@@ -64,7 +65,7 @@ cv::Mat WithGrayOf(const Frame& frame) {
 }
 
 std::string LineOf(const std::string& kind, double stamp) {
-  return FixedNumber(stamp, 6) + " " + ImagePath(kind, stamp);
+  return Format("%.6f ", stamp) + ImagePath(kind, stamp);
 }
 
 // Writes the lists of images. If readers would pair them by time in another
@@ -147,8 +148,6 @@ WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
   try {
     fs::path target = fs::weakly_canonical(folder);
     if (!target.has_filename()) target = target.parent_path();  // "folder/"
-    fs::path partial = target;
-    partial += ".partial";
     if (fs::exists(target) &&
         (!fs::is_directory(target) || !fs::is_empty(target))) {
       throw InputError(folder +
@@ -156,16 +155,10 @@ WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                        "or choose another");
     }
     fs::remove(target);  // fails now and not at the end, such as a mount point
-    fs::remove_all(partial);
-    try {
-      WrittenSequence written = WriteAll(source, partial, options);
-      fs::rename(partial, target);
-      return written;
-    } catch (...) {
-      std::error_code ignored;
-      fs::remove_all(partial, ignored);
-      throw;
-    }
+    const LockedFolder partial(target.string() + ".partial", folder + ":");
+    WrittenSequence written = WriteAll(source, partial.path(), options);
+    fs::rename(partial.path(), target);
+    return written;
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder + ": cannot be written: " + error.code().message());
   }

@@ -28,7 +28,7 @@ room() {
   fi
 }
 
-room core/util core 'Eigen/|ceres/|fcntl.h|sys/resource.h|unistd.h'
+room core/util core 'Eigen/|ceres/|fcntl.h|sys/|unistd.h'
 room core/geometry core 'Eigen/'
 room core/estimation core 'Eigen/|ceres/'
 room core/pose_graph core 'Eigen/|ceres/'

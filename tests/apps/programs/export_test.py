@@ -238,6 +238,25 @@ def check_lenses(program, work):
         check((scene['camera_model'], scene['k4']) == expected, scene['camera_model'])
 
 
+def check_overwriting(export, folder):
+    """Only what an export wrote is replaced."""
+    export('kitti', folder, '--overwrite')
+    mine = os.path.join(folder, 'mine.txt')
+    with open(mine, 'w', encoding='utf-8') as file:
+        file.write('mine')
+    refused = export('kitti', folder, '--overwrite')
+    check(refused.returncode == 2 and 'other files, such as mine.txt' in refused.stderr,
+          refused.stderr)
+    check(os.path.exists(mine), 'mine.txt is lost')
+    os.remove(mine)
+    # An export was killed between moving the old folder away and the new one in.
+    os.rename(folder, folder + '.replaced_by_export')
+    refused = export('kitti', folder)
+    check(refused.returncode == 2 and 'is not empty' in refused.stderr, refused.stderr)
+    check(export('kitti', folder, '--overwrite').returncode == 0, 'overwrite')
+    check(not os.path.exists(folder + '.replaced_by_export'), 'the old folder stays')
+
+
 def main(bin_folder, work, colmap):
     program = lambda name: os.path.join(bin_folder, name)
     with open(os.path.join(work, 'half.yaml'), 'w', encoding='utf-8') as file:
@@ -287,6 +306,11 @@ def main(bin_folder, work, colmap):
     for line, pose in zip(read_lines(kitti, 'poses.txt'), poses):
         check(same([numbers(line)[4 * i:4 * i + 4] for i in range(3)], pose), line)
     check(len(read_lines(kitti, 'times.txt')) == FRAMES, 'times')
+    check_overwriting(
+        lambda name, output, *flags: subprocess.run(
+            [program('rgbd_export'), f'--run={result}', f'--to={name}',
+             f'--output={output}', *flags], capture_output=True, text=True, check=False),
+        kitti)
     tum = export('tum', 'tum.txt')
     # Quaternions are normalised when read: the last digit may change.
     for line, of_run in zip(data_lines(tum), data_lines(result, 'trajectory.txt')):

@@ -1,0 +1,64 @@
+#include "core/util/locked_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Whether `file` is still the folder at `path`.
+bool IsAt(int file, const fs::path& path) {
+  struct stat open_one, one_there;
+  return fstat(file, &open_one) == 0 && stat(path.c_str(), &one_there) == 0 &&
+         open_one.st_dev == one_there.st_dev &&
+         open_one.st_ino == one_there.st_ino;
+}
+
+}  // namespace
+
+LockedFolder::LockedFolder(fs::path path, const std::string& name)
+    : path_(std::move(path)) {
+  const auto fail = [&name](const std::error_code& error) {
+    throw InputError(name + " cannot be created or written (" +
+                     error.message() + ")");
+  };
+  std::error_code error;
+  // The last user removes the folder when it ends. A program that opened it
+  // just before must create and lock it again.
+  do {
+    if (lock_ >= 0) close(lock_);
+    fs::create_directories(path_, error);
+    if (error) fail(error);
+    lock_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0 && errno == ENOENT) continue;
+    if (lock_ < 0) fail({errno, std::generic_category()});
+    // File systems without locks are accepted.
+    if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(lock_);
+      throw InputError(name +
+                       ": another program is writing its results here; wait "
+                       "for it or choose another folder");
+    }
+  } while (!IsAt(lock_, path_));
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    fs::remove_all(entry, error);
+  }
+}
+
+LockedFolder::~LockedFolder() {
+  std::error_code ignored;
+  if (IsAt(lock_, path_)) fs::remove_all(path_, ignored);
+  close(lock_);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace rgbd_pose {
+
+// A folder for files that are not complete yet, which only one program uses.
+class LockedFolder {
+ public:
+  // Creates the folder, or empties what a killed program left of it. `name`
+  // begins the messages. Throws InputError if another program uses the folder
+  // or it cannot be created.
+  LockedFolder(std::filesystem::path path, const std::string& name);
+
+  // Removes the folder, unless it has been moved.
+  ~LockedFolder();
+  LockedFolder(const LockedFolder&) = delete;
+  LockedFolder& operator=(const LockedFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  const std::filesystem::path path_;
+  int lock_ = -1;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,43 @@
+#include "core/util/locked_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "core/util/input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(LockedFolderTest, BelongsToOneProgramAndIsRemovedInTheEnd) {
+  const TempFolder folder;
+  const fs::path path = folder / "new";
+  {
+    folder.Write("new/old.txt", "left by a killed program");
+    const LockedFolder mine(path, "mine");
+    EXPECT_TRUE(fs::is_empty(path));
+    folder.Write("new/file.txt", "");
+    EXPECT_THROW(LockedFolder(path, "other"), InputError);
+    EXPECT_TRUE(fs::exists(path / "file.txt"));
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST(LockedFolderTest, ThatWasMovedLeavesTheNextOneAlone) {
+  const TempFolder folder;
+  const fs::path path = folder / "new";
+  std::optional<LockedFolder> first;
+  first.emplace(path, "first");
+  fs::rename(path, folder / "moved");
+  const LockedFolder second(path, "second");
+  first.reset();
+  EXPECT_TRUE(fs::exists(folder / "moved"));
+  EXPECT_TRUE(fs::exists(path));
+}
+
+}  // namespace
+}  // namespace rgbd_pose
