@@ -133,8 +133,8 @@ std::string FormatEstimates(const char* quantity, const Eigen::VectorXd& values,
   for (int i = 0; i < values.size(); ++i) {
     // Adding 0.0 removes the sign of -0.
     const double rounded = unit * std::round(factor * values[i] / unit) + 0.0;
-    const std::string estimate = FixedNumber(rounded, decimals) + " +- " +
-                                 FixedNumber(factor * sigmas[i], decimals);
+    const std::string estimate =
+        Format("%.*f +- %.*f", decimals, rounded, decimals, factor * sigmas[i]);
     text +=
         Format("  %16s", std::isfinite(sigmas[i]) ? estimate.c_str() : "n/a");
   }

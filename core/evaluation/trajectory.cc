@@ -121,10 +121,10 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d& t = pose.world_from_cam.translation;
     const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
-    text += FixedNumber(pose.timestamp, 6);
+    text += Format("%.6f", pose.timestamp);
     for (const double value :
          {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ' + FixedNumber(value, 9);
+      text += Format(" %.9f", value);
     }
     text += '\n';
   }

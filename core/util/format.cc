@@ -1,37 +1,36 @@
 #include "core/util/format.h"
 
 #include <charconv>
+#include <clocale>
 #include <cmath>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 
 namespace rgbd_pose {
 
 std::string Format(const char* format, ...) {
-  va_list arguments, again;
+  // With a decimal point, whatever the locale of the program.
+  static const locale_t kNeutral =
+      newlocale(LC_NUMERIC_MASK, "C", static_cast<locale_t>(nullptr));
+  const locale_t before = uselocale(kNeutral);
+  va_list arguments;
   va_start(arguments, format);
-  va_copy(again, arguments);
-  const int length = std::vsnprintf(nullptr, 0, format, arguments);
+  char* text = nullptr;
+  const int length = vasprintf(&text, format, arguments);
   va_end(arguments);
-  std::string text(length > 0 ? length : 0, '\0');
-  // The terminating zero is written where the string has its own.
-  std::vsnprintf(text.data(), text.size() + 1, format, again);
-  va_end(again);
-  return text;
-}
-
-std::string FixedNumber(double value, int decimals) {
-  char text[400];  // the largest double has 309 digits
-  return {text, std::to_chars(text, text + sizeof(text), value,
-                              std::chars_format::fixed, decimals)
-                    .ptr};
+  uselocale(before);
+  if (length < 0) return "";
+  const std::unique_ptr<char, void (*)(void*)> owner(text, std::free);
+  return {text, static_cast<size_t>(length)};
 }
 
 std::string NumberTo(double value, double sigma) {
   if (!(sigma > 0.0)) return Format("%.6g", value);
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(sigma)));
-  return FixedNumber(value, std::clamp(decimals, 0, 9));
+  return Format("%.*f", std::clamp(decimals, 0, 9), value);
 }
 
 std::string ShortNumber(double value) {

@@ -7,11 +7,8 @@
 
 namespace rgbd_pose {
 
-// Returns the text that printf would print.
+// Returns the text that printf would print, independent of the locale.
 [[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
-
-// A fixed number of decimals, independent of the locale.
-std::string FixedNumber(double value, int decimals);
 
 // Rounded to two significant digits of its standard deviation.
 std::string NumberTo(double value, double sigma);

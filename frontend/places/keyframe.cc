@@ -17,7 +17,7 @@ StoredImages::StoredImages(const Frame& frame)
 
 Frame StoredImages::Restore() const {
   const std::string of =
-      " image of the keyframe at " + FixedNumber(timestamp, 6);
+      " image of the keyframe at " + Format("%.6f", timestamp);
   Frame frame = {0, timestamp, depth_delay};
   frame.depth_scale = depth_scale;
   frame.gray = DecodeGrayImage(gray->bytes, "the grey" + of);

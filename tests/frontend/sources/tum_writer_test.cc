@@ -135,7 +135,7 @@ TEST_F(TumWriterTest, KeepsPairsThatAreNotNearestInTime) {
   const std::string list = (parent_ / "pairs.txt").string();
   const SyntheticDataset dataset(options_);
   const auto name = [&](const std::string& kind, int i) {
-    const std::string stamp = FixedNumber(dataset.timestamp(i), 6);
+    const std::string stamp = Format("%.6f", dataset.timestamp(i));
     return stamp + " " + kind + "/" + stamp + ".png";
   };
   WriteFileAtomically(list, name("rgb", 0) + " " + name("depth", 1) + "\n" +
