@@ -82,21 +82,17 @@ std::string ChangedByRansac(const std::vector<SweepCell>& cells,
 // Describes the effect of a start from RANSAC under a schedule.
 std::string RansacVerdict(const std::vector<SweepCell>& cells,
                           const std::string& schedule) {
-  const std::string lowered = ChangedByRansac(cells, schedule, true);
-  const std::string raised = ChangedByRansac(cells, schedule, false);
-  std::string text =
-      " Under the " + schedule + " schedule a start from RANSAC ";
-  if (lowered.empty() && raised.empty()) {
-    return text + "changes no median beyond the bands, at any share.";
+  std::vector<std::string> effects;
+  for (const bool lowered : {true, false}) {
+    const std::string losses = ChangedByRansac(cells, schedule, lowered);
+    if (losses.empty()) continue;
+    effects.push_back(std::string(lowered ? "lowers" : "raises") +
+                      " the median beyond the bands for " + losses);
   }
-  if (!lowered.empty()) {
-    text += "lowers the median beyond the bands for " + lowered;
-  }
-  if (!raised.empty()) {
-    text += std::string(lowered.empty() ? "" : " and ") +
-            "raises the median beyond the bands for " + raised;
-  }
-  return text + ".";
+  return " Under the " + schedule + " schedule a start from RANSAC " +
+         (effects.empty() ? "changes no median beyond the bands, at any share"
+                          : Join(effects, " and ")) +
+         ".";
 }
 
 }  // namespace
@@ -224,7 +220,6 @@ std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
                 " errors with their 95 % bands, from identity";
   chart.panel_width_px = 330;
   chart.panel_height_px = 420;
-  chart.label_lines = true;
   for (const char* schedule : {"gnc", "direct"}) {
     ChartPanel panel = {
         schedule == std::string("gnc") ? "Graduated from wide to narrow (gnc)"

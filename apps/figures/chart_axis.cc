@@ -45,33 +45,4 @@ std::vector<AxisTick> LogTicks(const AxisRange& range) {
   return ticks;
 }
 
-std::vector<double> SpreadOut(const std::vector<double>& places,
-                              double distance) {
-  // Neighbours that touch move together, centred on the mean of their places.
-  struct Run {
-    double sum;  // of the places, each minus its offset within the run
-    int count;
-    double First() const { return sum / count; }
-  };
-  std::vector<Run> runs;
-  for (const double place : places) {
-    runs.push_back({place, 1});
-    while (runs.size() > 1) {
-      const Run last = runs.back();
-      Run& before = runs[runs.size() - 2];
-      if (last.First() >= before.First() + before.count * distance) break;
-      before.sum += last.sum - last.count * before.count * distance;
-      before.count += last.count;
-      runs.pop_back();
-    }
-  }
-  std::vector<double> spread;
-  for (const Run& run : runs) {
-    for (int i = 0; i < run.count; ++i) {
-      spread.push_back(run.First() + i * distance);
-    }
-  }
-  return spread;
-}
-
 }  // namespace rgbd_pose

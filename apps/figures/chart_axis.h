@@ -27,9 +27,4 @@ std::vector<AxisTick> LinearTicks(const AxisRange& range);
 // Ticks at powers of ten, also at 2 and 5 times them if there are few.
 std::vector<AxisTick> LogTicks(const AxisRange& range);
 
-// Moves sorted places apart to at least `distance`, with least-squares
-// displacements. Used for labels that would overlap.
-std::vector<double> SpreadOut(const std::vector<double>& places,
-                              double distance);
-
 }  // namespace rgbd_pose

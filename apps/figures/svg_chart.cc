@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 #include "apps/figures/chart_axis.h"
 #include "core/util/format.h"
@@ -22,8 +21,6 @@ constexpr int kTitle = 34;
 constexpr int kLegendRow = 20;
 constexpr int kLegendColumn = 170;
 
-constexpr int kLabelColumn = 130;  // of labels at the ends of lines
-constexpr double kLabelRow = 14.0;
 constexpr int kTitleLetter = 9;
 
 std::string Text(double x, double y, const std::string& style,
@@ -82,13 +79,11 @@ Ranges RangesOf(const std::vector<ChartPanel>& panels) {
 class Drawing {
  public:
   explicit Drawing(const Chart& chart) : chart_(chart) {
-    cell_width_ = kLeft + chart.panel_width_px + kRight +
-                  (chart.label_lines ? kLabelColumn : 0);
+    cell_width_ = kLeft + chart.panel_width_px + kRight;
     cell_height_ = kTop + chart.panel_height_px + kBottom;
     width_ = kColumns * cell_width_;
     per_row_ = std::max(1, (width_ - kLeft) / kLegendColumn);
-    const int labels =
-        chart.label_lines ? 0 : static_cast<int>(chart.panels[0].series.size());
+    const int labels = static_cast<int>(chart.panels[0].series.size());
     top_ = kTitle + kLegendRow * ((labels + per_row_ - 1) / per_row_);
   }
 
@@ -103,7 +98,7 @@ class Drawing {
         "fill=\"#fff\"/>\n",
         width_, height, width_, height);
     text_ += Text(kLeft, 22, "font-size=\"15\"", Title());
-    if (!chart_.label_lines) DrawLegend();
+    DrawLegend();
     for (size_t i = 0; i < chart_.panels.size(); ++i) {
       left_ = static_cast<int>(i) % kColumns * cell_width_ + kLeft;
       upper_ = static_cast<int>(i) / kColumns * cell_height_ + top_ + kTop;
@@ -146,14 +141,13 @@ class Drawing {
   void FindRanges(const ChartPanel& panel) {
     std::vector<ChartPanel> alike;
     for (const ChartPanel& other : chart_.panels) {
-      if (other.is_map == panel.is_map) alike.push_back(other);
+      if (other.y_label == panel.y_label) alike.push_back(other);
     }
-    ranges_ = RangesOf(panel.is_map || !chart_.label_lines
-                           ? std::vector<ChartPanel>{panel}
-                           : alike);
+    ranges_ = RangesOf(alike);
     if (!panel.is_map) return;
     double scale = 0.0;
-    for (const ChartPanel& other : alike) {
+    for (const ChartPanel& other : chart_.panels) {
+      if (!other.is_map) continue;
       const Ranges own = RangesOf({other});
       scale = std::max({scale, own.x.span() / chart_.panel_width_px,
                         own.y.span() / chart_.panel_height_px});
@@ -188,7 +182,6 @@ class Drawing {
     }
     for (const ChartSeries& series : panel.series) DrawBand(panel, series);
     for (const ChartSeries& series : panel.series) DrawLine(panel, series);
-    if (chart_.label_lines) DrawLabels(panel);
     text_ +=
         Format("<path d=\"M%d %dV%dH%d\" fill=\"none\" stroke=\"#444\"/>\n",
                left_, upper_, lower, right);
@@ -234,32 +227,6 @@ class Drawing {
     }
     if (line.empty()) return;
     text_ += "<path d=\"" + line + "\" " + LineStyle(series) + "/>\n" + markers;
-  }
-
-  void DrawLabels(const ChartPanel& panel) {
-    std::vector<std::pair<double, const ChartSeries*>> ends;
-    for (const ChartSeries& series : panel.series) {
-      if (series.points.empty()) continue;
-      const double y = PixelY(AxisY(panel, series.points.back().y));
-      if (std::isfinite(y)) ends.emplace_back(y, &series);
-    }
-    std::stable_sort(
-        ends.begin(), ends.end(),
-        [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<double> places;
-    for (const auto& [y, series] : ends) places.push_back(y);
-    places = SpreadOut(places, kLabelRow);
-    for (size_t i = 0; i < ends.size(); ++i) {
-      const auto& [y, series] = ends[i];
-      const double x = PixelX(series->points.back().x);
-      const double label_x = left_ + chart_.panel_width_px + 18.0;
-      text_ += Format(
-          "<path d=\"M%.1f %.1fL%.1f %.1f\" stroke=\"%s\" "
-          "stroke-width=\"0.7\"/>\n",
-          x + 5.0, y, label_x, places[i], series->style.colour.c_str());
-      text_ += Marker(series->style, label_x + 6.0, places[i]);
-      text_ += Text(label_x + 14.0, places[i] + 4.0, "", series->label);
-    }
   }
 
   const Chart& chart_;

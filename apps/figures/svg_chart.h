@@ -43,14 +43,13 @@ struct ChartPanel {
   bool is_map = false;
 };
 
-// Panels, two in a row, below a common legend (of the first panel), or with
-// labels at the ends of the lines and the same ranges in all panels.
+// Panels, two in a row, below a common legend (of the first panel). Panels with
+// the same y_label have the same ranges.
 struct Chart {
   std::string title;
   std::vector<ChartPanel> panels;  // at least one
   int panel_width_px = 360;
   int panel_height_px = 360;
-  bool label_lines = false;
 };
 
 // Escapes a text for an element of SVG or HTML.

@@ -12,8 +12,6 @@ namespace {
 
 using Status = CalibratedParameter::Status;
 
-constexpr double kPictureWidth = 440.0;
-
 constexpr char kHead[] =
     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
     "<title>Calibration</title><style>"
@@ -36,15 +34,8 @@ std::string Bar(const CalibratedParameter& parameter) {
       2.0 * kHalf, kHalf, kHalf);
   const double found = sigmas(parameter.found);
   if (std::abs(found) > 1.0) {
-    const double tip = found > 0.0 ? 2.0 * kHalf : 0.0;
-    const double base = found > 0.0 ? tip - 10.0 : 10.0;
-    return text + Format(
-                      "<path d=\"M%.0f 7H%.0f\" stroke=\"#d62728\" "
-                      "stroke-width=\"4\"/>"
-                      "<path d=\"M%.0f 0L%.0f 7L%.0f 14Z\" "
-                      "fill=\"#d62728\"/></svg> %+.1f "
-                      "sigma",
-                      kHalf, base, base, tip, base, found);
+    return text + Format("</svg> <b style=\"color:#d62728\">%s %+.1f sigma</b>",
+                         found > 0.0 ? "&rarr;" : "&larr;", found);
   }
   const auto at = [&](double value) {
     return kHalf * (1.0 + std::clamp(sigmas(value), -1.0, 1.0));
@@ -88,38 +79,23 @@ constexpr char kWhatNext[] =
     "<li>&ldquo;fit no better&rdquo; or &ldquo;no error found&rdquo;: the "
     "first camera is as good; continue to use it.</li>"
     "<li>&ldquo;halves of the recording disagree&rdquo;: there is an error "
-    "that no parameter describes: a rolling shutter (enter the readouts in "
-    "the camera file, or move slowly), blur, moving objects, a wrong depth "
-    "unit.</li>"
+    "that no parameter describes: blur, moving objects, a wrong depth unit, "
+    "a lens of another kind.</li>"
     "<li>&ldquo;not plausible&rdquo; or an arrow in the table: the parameter "
     "compensates for another error; keep it with --fix=.</li>"
     "<li>too few pairs, or no parameter determined: record half a minute, turn "
     "and move at the same time, with near and far objects in view.</li></ul>\n";
 
 std::string PathPicture(const Trajectory& path) {
-  if (path.size() < 2) return "";
-  const auto from_above = [](const StampedPose& pose) {
-    const Eigen::Vector3d& p = pose.world_from_cam.translation;
-    return Eigen::Vector2d(p.x(), -p.z());
-  };
-  Eigen::AlignedBox2d box;
-  for (const StampedPose& pose : path) box.extend(from_above(pose));
-  constexpr double kBorder = 10.0;
-  const double size = std::max(box.sizes().maxCoeff(), 1e-3);
-  const double scale = (kPictureWidth - 2.0 * kBorder) / size;
-  std::string text = Format(
-      "<h2>Path from above</h2><figure><svg width=\"%.0f"
-      "\" height=\"%.0f\"><polyline fill=\"none\" "
-      "stroke=\"#1f77b4\" points=\"",
-      kPictureWidth, box.sizes().y() * scale + 2.0 * kBorder);
+  ChartSeries line{"camera", {"#0072B2", "", -1}};
   for (const StampedPose& pose : path) {
-    const Eigen::Vector2d at = (from_above(pose) - box.min()) * scale;
-    text += Format("%.1f,%.1f ", at.x() + kBorder, at.y() + kBorder);
+    const Eigen::Vector3d& p = pose.world_from_cam.translation;
+    line.points.push_back({p.x(), p.z()});
   }
-  return text + Format(
-                    "\"/></svg><figcaption>%.2f m wide, as tracked with the "
-                    "first camera</figcaption></figure>\n",
-                    box.sizes().x());
+  ChartPanel panel{
+      "Path from above, as tracked in the last pass", "x, m", "z, m", {line}};
+  panel.is_map = true;
+  return FormatSvg({"", {panel}});
 }
 
 }  // namespace

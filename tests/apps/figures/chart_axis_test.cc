@@ -51,15 +51,5 @@ TEST(ChartAxisTest, LogTicsGetFewerOnALongAxis) {
   }
 }
 
-TEST(ChartAxisTest, LabelsThatTouchAreSpreadAroundTheirMiddle) {
-  EXPECT_THAT(SpreadOut({}, 10.0), IsEmpty());
-  EXPECT_THAT(SpreadOut({0.0, 10.0, 30.0}, 10.0), ElementsAre(0.0, 10.0, 30.0));
-  EXPECT_THAT(SpreadOut({50.0, 50.0, 50.0}, 10.0),
-              ElementsAre(40.0, 50.0, 60.0));
-  // Once spread, the first two touch the third.
-  EXPECT_THAT(SpreadOut({10.0, 10.0, 16.0, 90.0}, 10.0),
-              ElementsAre(2.0, 12.0, 22.0, 90.0));
-}
-
 }  // namespace
 }  // namespace rgbd_pose
