@@ -16,20 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsRecording(const fs::path& path) {
-  std::error_code error;
-  return fs::is_directory(path, error) || IsBag(path, BagKind::kRos1) ||
-         IsBag(path, BagKind::kRos2);
-}
-
 // The folders and bags that match a pattern, sorted.
 std::vector<std::string> MatchingFolders(const std::string& pattern) {
   glob_t matches = {};
   std::vector<std::string> folders;
   if (glob(pattern.c_str(), 0, nullptr, &matches) == 0) {
     for (size_t i = 0; i < matches.gl_pathc; ++i) {
-      if (IsRecording(matches.gl_pathv[i])) {
-        folders.emplace_back(matches.gl_pathv[i]);
+      const std::string path = matches.gl_pathv[i];
+      std::error_code error;
+      if (fs::is_directory(path, error) || IsBag(path, BagKind::kRos1) ||
+          IsBag(path, BagKind::kRos2)) {
+        folders.push_back(path);
       }
     }
   }

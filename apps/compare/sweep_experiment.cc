@@ -22,26 +22,21 @@ constexpr double kMaxAngle = 0.1;        // rad
 constexpr double kMaxTranslation = 0.1;  // m, along each axis
 constexpr unsigned kFirstSeed = 7000;    // different from the benchmarks' seeds
 
-struct MotionError {
-  double rotation_deg = 0.0;
-  double translation_mm = 0.0;
-};
-
-std::vector<MotionError> RunSeed(int seed, double outlier_share,
-                                 const std::vector<SweepMethod>& methods,
-                                 std::vector<Estimator>* estimators) {
+// What each method leaves of the true motion.
+std::vector<Rigid3d> RunSeed(int seed, double outlier_share,
+                             const std::vector<SweepMethod>& methods,
+                             std::vector<Estimator>* estimators) {
   RandomWorld world(kFirstSeed + seed);
   const Rigid3d truth = world.Motion(kMaxAngle, kMaxTranslation);
   const Correspondences found = world.Matches(kMatches, outlier_share, truth);
   const Rigid3d ransac =
       FindByRansac(found).value_or(Consensus()).cur_from_prev;
-  std::vector<MotionError> errors;
+  std::vector<Rigid3d> errors;
   for (size_t i = 0; i < methods.size(); ++i) {
     const Rigid3d guess = methods[i].ransac ? ransac : Rigid3d();
-    const Rigid3d off =
-        (*estimators)[i].Estimate(found, guess).cur_from_prev.Inverse() * truth;
     errors.push_back(
-        {off.Angle() * 180.0 / M_PI, off.translation.norm() * 1e3});
+        (*estimators)[i].Estimate(found, guess).cur_from_prev.Inverse() *
+        truth);
   }
   return errors;
 }
@@ -65,7 +60,7 @@ std::vector<SweepCell> RunSweep(EstimatorSettings settings,
   }
   std::vector<SweepCell> cells(methods.size() * kSweepShares);
   for (int share = 0; share < kSweepShares; ++share) {
-    std::vector<std::vector<MotionError>> errors(seeds);
+    std::vector<std::vector<Rigid3d>> errors(seeds);
     ParallelFor(threads, threads, [&](int thread) {
       for (int seed = thread; seed < seeds; seed += threads) {
         errors[seed] =
@@ -74,9 +69,9 @@ std::vector<SweepCell> RunSweep(EstimatorSettings settings,
     });
     for (size_t i = 0; i < methods.size(); ++i) {
       std::vector<double> rotations, translations;
-      for (const std::vector<MotionError>& of_seed : errors) {
-        rotations.push_back(of_seed[i].rotation_deg);
-        translations.push_back(of_seed[i].translation_mm);
+      for (const std::vector<Rigid3d>& of_seed : errors) {
+        rotations.push_back(of_seed[i].Angle() * 180.0 / M_PI);
+        translations.push_back(of_seed[i].translation.norm() * 1e3);
       }
       cells[i * kSweepShares + share] = {methods[i], SweepShare(share),
                                          FindMedianBand(rotations),

@@ -1,7 +1,7 @@
 #include "apps/shell/csv_table.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <sstream>
 
 #include "core/util/input_error.h"
@@ -61,7 +61,7 @@ std::vector<double> CsvTable::Numbers(const std::string& column) const {
   std::vector<double> numbers;
   int line = 2;
   for (const std::string& word : Words(column)) {
-    numbers.push_back(word.empty() ? std::numeric_limits<double>::quiet_NaN()
+    numbers.push_back(word.empty() ? NAN
                                    : ParseNumber(word, path_, line, column));
     ++line;
   }

@@ -4,6 +4,7 @@
 
 #include "apps/view/view_state.h"
 #include "core/util/format.h"
+#include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 
 namespace rgbd_pose {
@@ -27,12 +28,9 @@ std::string Text(const std::string& text) {
 
 template <typename Items, typename FormatItem>
 std::string List(const Items& items, const FormatItem& format) {
-  std::string text = "[";
-  for (const auto& item : items) {
-    if (text.size() > 1) text += ",";
-    text += format(item);
-  }
-  return text + "]";
+  std::vector<std::string> texts;
+  for (const auto& item : items) texts.push_back(format(item));
+  return "[" + Join(texts, ",") + "]";
 }
 
 std::string FormatPose(const Rigid3d& pose) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/util/format.h"
@@ -121,7 +120,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   if (!(eigen.eigenvalues()[0] > kSingular)) {
     result.reason = Describe(
         unit.cwiseProduct(eigen.eigenvectors().col(0)).cwiseQuotient(means),
-        std::numeric_limits<double>::infinity());
+        INFINITY);
     return result;
   }
   const MotionMatrix covariance =

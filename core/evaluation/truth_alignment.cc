@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -113,8 +112,7 @@ FixingVector SigmaOf(const FixingEquations& equations,
   for (int i = 0; i < sigma.size(); ++i) {
     const bool is_open =
         rest.cols() > 0 && rest.row(i).squaredNorm() > kMaxOpenShare;
-    sigma[i] = is_open ? std::numeric_limits<double>::infinity()
-                       : std::sqrt(std::max(0.0, covariance(i, i)));
+    sigma[i] = is_open ? INFINITY : std::sqrt(std::max(0.0, covariance(i, i)));
   }
   return sigma;
 }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
 
 namespace rgbd_pose {
 namespace {
@@ -30,7 +29,7 @@ std::array<Eigen::Matrix3d, 3> RotationDerivatives(const double* angles) {
 LinearizationPoint::LinearizationPoint(const Rigid3d& cur_from_prev)
     : R_(cur_from_prev.rotation.toRotationMatrix()),
       C_(-(R_.transpose() * cur_from_prev.translation)) {
-  shared_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  shared_x_.setConstant(NAN);
 }
 
 MotionDerivatives LinearizationPoint::DerivativesAt(const double* x) const {

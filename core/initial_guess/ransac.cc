@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/initial_guess/consensus.h"
@@ -28,7 +27,7 @@ int SamplesNeeded(double share) {
 
 std::optional<Rigid3d> BestOfSamples(const std::vector<PointMatch>& matches) {
   std::optional<Rigid3d> best;
-  double best_cost = std::numeric_limits<double>::infinity();
+  double best_cost = INFINITY;
   // Takes a motion and returns true if the sum of squared distances, each
   // limited to that of an inlier, is smaller (MSAC; Torr & Zisserman 2000).
   const auto improve = [&](const std::optional<Rigid3d>& motion) {

@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -26,8 +25,7 @@ Eigen::Matrix3d EulerRates(const double* x) {
 }  // namespace
 
 MotionMatrix SqrtInformation(const MotionMatrix& information) {
-  MotionMatrix none =
-      MotionMatrix::Constant(std::numeric_limits<double>::quiet_NaN());
+  MotionMatrix none = MotionMatrix::Constant(NAN);
   if (!information.allFinite()) return none;
   // Scaled first: rotation and translation differ by orders of magnitude.
   const MotionVector size =

@@ -5,7 +5,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include <Eigen/Core>
-#include <limits>
+#include <cmath>
 
 #include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
@@ -88,8 +88,7 @@ class MotionSums {
   const MotionCost* cost_;
   const LinearizationPoint* origin_;
   const ceres::LossFunction* loss_;
-  mutable MotionVector kept_x_ =
-      MotionVector::Constant(std::numeric_limits<double>::quiet_NaN());
+  mutable MotionVector kept_x_ = MotionVector::Constant(NAN);
   mutable CompressedSums<6> kept_;
 };
 

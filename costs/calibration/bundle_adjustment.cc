@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/util/quantile.h"
 
@@ -143,7 +142,7 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable()) {
-    return std::numeric_limits<double>::quiet_NaN();
+    return NAN;
   }
   for (size_t i = 0; i < x.size(); ++i) {
     state->world_from_cam[i] = origins[i].CurFromPrev(x[i].data()).Inverse();

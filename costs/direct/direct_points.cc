@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "costs/direct/surface.h"
 
@@ -24,7 +23,7 @@ constexpr int kSlopeStep = 3;
 // with a slope of up to about 75 degrees.
 bool IsOneSurface(const FrameView& frame, int column, int row) {
   constexpr double kMaxRelativeStep = 0.02;
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  double low = INFINITY, high = 0.0;
   for (int v = row - 1; v <= row + 1; ++v) {
     for (int u = column - 1; u <= column + 1; ++u) {
       const double z = frame.DepthAt(u, v);

@@ -81,12 +81,6 @@ std::vector<fs::path> FilesOf(const std::string& path, BagKind kind) {
   return files;
 }
 
-std::unique_ptr<BagReader> OpenFile(const fs::path& file, BagKind kind) {
-  if (kind == BagKind::kRos1) return OpenRos1Bag(file.string());
-  return file.extension() == kMcap ? OpenMcapFile(file.string())
-                                   : OpenBagDatabase(file.string());
-}
-
 // Reads the files of a recording one after the other.
 class BagFiles final : public BagReader {
  public:
@@ -100,7 +94,9 @@ class BagFiles final : public BagReader {
         UnpackZstdFile(file.string(), copy.string());
         file = copy;
       }
-      files_.push_back(OpenFile(file, kind));
+      files_.push_back(kind == BagKind::kRos1      ? OpenRos1Bag(file)
+                       : file.extension() == kMcap ? OpenMcapFile(file)
+                                                   : OpenBagDatabase(file));
       if (files_.size() == 1) format_ = files_.back()->format();
       if (files_.back()->format() != format_) {
         throw InputError(file.string() +

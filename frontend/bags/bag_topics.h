@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "frontend/bags/bag_reader.h"
-#include "frontend/bags/ros_image.h"
 #include "frontend/bags/ros_messages.h"
 #include "frontend/files/camera_file.h"
 

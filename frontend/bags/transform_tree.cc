@@ -1,7 +1,7 @@
 #include "frontend/bags/transform_tree.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace rgbd_pose {
 
@@ -55,9 +55,9 @@ std::optional<Rigid3d> TransformTree::Fixed(const std::string& target,
 
 Trajectory TransformTree::PathOf(const std::string& world,
                                  const std::string& frame) const {
-  constexpr double kAnyGap = std::numeric_limits<double>::infinity();  // s
-  std::vector<const Edge*> edges;  // from the frame up to the world
-  const Edge* most = nullptr;      // that moves, with most samples
+  constexpr double kAnyGap = INFINITY;  // s
+  std::vector<const Edge*> edges;       // from the frame up to the world
+  const Edge* most = nullptr;           // that moves, with most samples
   for (const std::string* at = &frame; *at != world;) {
     const auto found = edges_.find(*at);
     // The limit ends the loop if the frames form a cycle.

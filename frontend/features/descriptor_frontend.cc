@@ -1,4 +1,4 @@
-#include <limits>
+#include <cmath>
 #include <utility>
 
 #include "frontend/features/descriptor_matching.h"
@@ -57,8 +57,7 @@ class DescriptorFrontend final : public Frontend {
     guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
     for (const Observation& o : features.observations) {
       const Eigen::Vector3d point = cur_from_ref_guess * PointOf(o);
-      Eigen::Vector2d pixel =
-          Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+      Eigen::Vector2d pixel = Eigen::Vector2d::Constant(NAN);
       if (o.depth > 0.0 && point.z() > 0.0) {
         pixel = ImagePoint(options_.camera, timing, point);
       }

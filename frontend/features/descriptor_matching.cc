@@ -1,7 +1,6 @@
 #include "frontend/features/descriptor_matching.h"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <opencv2/core/hal/hal.hpp>
 #include <optional>
@@ -92,7 +91,7 @@ class KeypointGrid {
 
 struct Nearest {
   int place = -1;
-  double distance = std::numeric_limits<double>::infinity();
+  double distance = INFINITY;
 };
 
 // Returns the nearest candidate if it passes the ratio test.

@@ -1,7 +1,6 @@
 #include "frontend/fusion/voxel_cloud.h"
 
 #include <cmath>
-#include <opencv2/core.hpp>
 
 #include "frontend/fusion/voxel_key.h"
 

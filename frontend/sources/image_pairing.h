@@ -2,8 +2,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -74,7 +74,7 @@ class ImagePairing {
   std::set<StampedImage> colors_;  // that wait for their counterparts
   std::set<StampedImage> depths_;
   // Stamp of the last colour image processed.
-  double last_color_ = -std::numeric_limits<double>::infinity();
+  double last_color_ = -INFINITY;
   bool is_finished_ = false;
   int unmatched_color_ = 0;
   int same_stamp_ = 0;
