@@ -16,7 +16,7 @@
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
 DEFINE_bool(report, true, "write OUTPUT/report.html");
-DEFINE_string(output, "", "folder to create for the results");
+DEFINE_string(output, "", "folder for the results, new or of an earlier run");
 
 namespace rgbd_pose {
 namespace {
@@ -56,6 +56,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   // Check the input before anything is created.
   OpenSequence(settings.sequence);
+  RequireOtherFolder("output", FLAGS_output, settings.sequence.dataset);
   RunFolder folder(FLAGS_output);
   const auto start = std::chrono::steady_clock::now();
   const RecordingCalibration calibration =

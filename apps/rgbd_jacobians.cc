@@ -3,8 +3,8 @@
 
 #include <gflags/gflags.h>
 
+#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 
 #include "apps/shell/program.h"
@@ -69,9 +69,8 @@ Errors ErrorsOf(const Jacobian& actual, const Jacobian& expected) {
       const Eigen::Vector3d off =
           (actual.row(row) - expected.row(row)).segment<3>(3 * half);
       const double error = off.lpNorm<Eigen::Infinity>();
-      errors(row, half) = !off.allFinite()
-                              ? std::numeric_limits<double>::infinity()
-                              : (size > 0.0 ? error / size : error);
+      errors(row, half) =
+          !off.allFinite() ? INFINITY : (size > 0.0 ? error / size : error);
     }
   }
   return errors;
@@ -119,6 +118,9 @@ bool ReportAll(TypeList<Residuals...>) {
 
 int Main() {
   if (FLAGS_samples < 1) throw InputError("--samples must be at least 1");
+  if (FLAGS_cost.find('+') != std::string::npos) {
+    throw InputError("--cost: must be one cost, or empty for all");
+  }
   if (!FLAGS_cost.empty()) MakeRobustCosts(FLAGS_cost, "none");
   std::printf("%-20s %-16s %12s %12s\n", "cost", "block", "autodiff",
               "differences");

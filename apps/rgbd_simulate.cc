@@ -51,7 +51,7 @@ std::vector<Setting> Table(SimulateSettings* settings) {
        "camera that moves through the image at 5 to 8 px per frame",
        &options->moving_patch},
       {"walking_boxes", kGroup,
-       "number of boxes, 0..3, that walk to and fro through the scene 'room'",
+       "number of boxes, 0..3, that walk to and fro through the scene",
        &options->walking_boxes},
       {"black", kGroup,
        "time (s) during which colour is black, in the middle of the sequence",

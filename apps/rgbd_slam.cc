@@ -73,11 +73,27 @@ void LoadMaps(const ProgramSettings& settings, Slam* slam) {
   }
 }
 
+// Throws InputError if no map can be saved where it is requested.
+void RequireMapToSave(const ProgramSettings& settings) {
+  if (settings.save_map.empty()) return;
+  RequireOtherFolder("save_map", settings.save_map, settings.output.output);
+  RequireMapFolder(settings.save_map);
+}
+
 // The result of --calibrate, if it is requested.
 std::optional<RecordingCalibration> Calibrate(const ProgramSettings& settings,
                                               int threads) {
   if (!FLAGS_calibrate) return std::nullopt;
-  OpenSequence(settings.sequence);
+  if (!settings.load_map.empty()) {
+    throw InputError(
+        "--calibrate changes the camera, which --load_map must keep; calibrate "
+        "before the map is made");
+  }
+  RequireOtherFolder("output", settings.output.output,
+                     settings.sequence.dataset);
+  RunOutput(settings.output, *OpenSequence(settings.sequence).source,
+            settings.odometry.features.depth);
+  RequireMapToSave(settings);
   OdometrySettings odometry = settings.odometry;
   odometry.odometry.max_flow_px =
       std::min(odometry.odometry.max_flow_px,
@@ -100,7 +116,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
       OpenSequence(settings.sequence, /*keep_color=*/false,
                    has_camera ? &found->result.camera : nullptr);
   Warn(sequence.remarks);
-  if (!settings.save_map.empty()) RequireMapFolder(settings.save_map);
+  RequireMapToSave(settings);
   SequenceRun run(settings.odometry, settings.slam, sequence.source->camera(),
                   sequence.inputs);
   LoadMaps(settings, run.slam());

@@ -20,8 +20,8 @@ std::string DirectOptions::Check() const {
   if (num_levels < 1 || finest_level < 0) {
     return "num_levels must be positive and finest_level not negative";
   }
-  if (!(information_factor >= 0.0)) {
-    return "information_factor must not be negative";
+  if (!(information_factor >= 0.0 && information_factor <= 1.0)) {
+    return "information_factor must be 0 to 1";
   }
   return "";
 }

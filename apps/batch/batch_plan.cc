@@ -206,6 +206,7 @@ std::string HashSequence(const BatchSequence& sequence) {
     AddImagesOf(sequence.folder, "rgb.txt", &hash);
     AddImagesOf(sequence.folder, "depth.txt", &hash);
     AddFile(fs::path(sequence.folder) / "groundtruth.txt", &hash);
+    AddFile(fs::path(sequence.folder) / "calibration.txt", &hash);
   } else {
     AddAllOf(sequence.folder, &hash);
   }

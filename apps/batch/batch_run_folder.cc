@@ -94,7 +94,9 @@ std::optional<RunEnd> BatchFolder::ReadEnd(const BatchRun& run) const {
     if (!json.at("exit_code").is_number_integer()) return std::nullopt;
     const RunEnd end = {json.at("status"), json.at("exit_code"),
                         json.at("hash")};
-    if (end.hash == run.hash && IsStatus(end.status)) return end;
+    const bool has_results =
+        end.exit_code != 0 || IsFile(fs::path(Complete(run)) / "metrics.json");
+    if (end.hash == run.hash && IsStatus(end.status) && has_results) return end;
   } catch (const nlohmann::json::exception&) {
     // from another program
   }

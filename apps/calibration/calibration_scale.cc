@@ -1,25 +1,32 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "apps/calibration/calibration_data.h"
 #include "core/evaluation/association.h"
 #include "core/evaluation/trajectory.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
 
 KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
                        const std::string& text) {
-  KnownDistance known;
-  double t0, t1;
-  char end;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &t0, &t1, &known.metres,
-                  &end) != 3 ||
-      !std::isfinite(t0) || !std::isfinite(t1) || !(known.metres > 0.0) ||
-      !std::isfinite(known.metres)) {
+  std::vector<double> numbers;
+  try {
+    for (const std::string& word : SplitList(text)) {
+      numbers.push_back(ParseNumber(word, "", 0, ""));
+    }
+  } catch (const InputError&) {
+    numbers.clear();
+  }
+  if (numbers.size() != 3 || !(numbers[2] > 0.0)) {
     throw InputError("known_length: must be T0,T1,METRES, not '" + text + "'");
   }
+  KnownDistance known;
+  known.metres = numbers[2];
   const std::vector<double> times = TimesOf(path);
   // The position of a frame relative to the nearest keyframe in time.
   const auto find = [&](double time, int* keyframe,
@@ -32,13 +39,21 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
                        std::to_string(time) + " s");
     }
     *keyframe = static_cast<int>(NearestTime(data.timestamps, time));
-    const StampedPose& there =
-        path[NearestTime(times, data.timestamps[*keyframe])];
-    *in_keyframe = (there.world_from_cam.Inverse() * path[frame].world_from_cam)
-                       .translation;
+    const size_t at = NearestTime(times, data.timestamps[*keyframe]);
+    // Across lost frames the path does not know the motion.
+    const auto [first, last] = std::minmax(frame, at);
+    const double usual = (times.back() - times.front()) / (times.size() - 1);
+    for (size_t i = first; i < last; ++i) {
+      if (times[i + 1] - times[i] < 1.5 * usual) continue;
+      throw InputError("known_length: frames near " + ShortNumber(time) +
+                       " s were lost; choose another time");
+    }
+    *in_keyframe =
+        (path[at].world_from_cam.Inverse() * path[frame].world_from_cam)
+            .translation;
   };
-  find(t0, &known.a, &known.in_a);
-  find(t1, &known.b, &known.in_b);
+  find(numbers[0], &known.a, &known.in_a);
+  find(numbers[1], &known.b, &known.in_b);
   if (known.a == known.b) {
     throw InputError(
         "known_length: the camera hardly moved between the two times");

@@ -55,7 +55,7 @@ class SequenceExperiment {
       shares.push_back(run.loss + Format(" %.1f", run.TrackedShare() * 100.0));
       any_tracked_ |= run.TrackedShare() >= kMinTrackedShare;
     }
-    report_ += "## " + title + "\n\n";
+    report_ += "## " + title + "\n\n" + stopped_;
     if (returns_to_start) {
       report_ +=
           "End pose compared with angle [0 0 0] and translation [0 0 0], as in "
@@ -84,13 +84,13 @@ class SequenceExperiment {
   ExperimentResult Finish() const {
     WriteOutput(output_, "tables.csv", tables_);
     WriteOutput(output_, "paths.csv", paths_);
-    return {report_, any_tracked_};
+    return {report_, any_tracked_ && stopped_.empty()};
   }
 
  private:
   // Tracks a sequence with all losses and otherwise equal settings.
   std::vector<LossRun> Track(FrameSource* source,
-                             const std::optional<Trajectory>& truth) const {
+                             const std::optional<Trajectory>& truth) {
     OdometrySettings settings = settings_.odometry;
     std::vector<SequenceRun> runs;
     for (const std::string& loss : losses_) {
@@ -108,7 +108,7 @@ class SequenceExperiment {
             return true;
           });
       Warn(DroppedFrames(*source, all[0]->damaged()));
-      if (!stopped.empty()) Warn({"stopped early: " + stopped});
+      if (!stopped.empty()) stopped_ = "Stopped early: " + stopped + "\n\n";
     }
     std::vector<LossRun> results;
     for (size_t i = 0; i < losses_.size(); ++i) {
@@ -125,6 +125,7 @@ class SequenceExperiment {
   std::string tables_ = std::string("sequence,loss,") + kSequenceFigures + "\n";
   std::string paths_ = std::string("sequence,loss,") + kPathColumns + "\n";
   bool any_tracked_ = false;  // by any loss, in any sequence
+  std::string stopped_;       // why a sequence ended early; empty: none did
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "apps/pipeline/sequence.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/evaluation/association.h"
@@ -120,24 +121,20 @@ const Trajectory* Sequence::GroundTruth() {
 
 std::vector<std::string> DroppedFrames(
     const FrameSource& source, const std::vector<std::string>& damaged) {
-  constexpr size_t kMaxNamed = 10;
+  constexpr int kMaxNamed = 10;
+  const int count = static_cast<int>(damaged.size());
   std::vector<std::string> lines;
-  for (size_t i = 0; i < damaged.size() && i < kMaxNamed; ++i) {
+  for (int i = 0; i < std::min(count, kMaxNamed); ++i) {
     lines.push_back(damaged[i] + "; this frame is left out");
   }
-  if (damaged.size() > kMaxNamed) {
-    lines.push_back(std::to_string(damaged.size() - kMaxNamed) +
-                    " further frames are damaged and left out");
-  }
-  if (source.unmatched_color() > 0) {
-    lines.push_back(
-        std::to_string(source.unmatched_color()) +
-        " colour images have no depth image of the same time and are left out");
-  }
-  if (source.dropped() > 0) {
-    lines.push_back(
-        std::to_string(source.dropped()) +
-        " frames arrived faster than they were processed and are left out");
+  for (const auto& [number, what] :
+       {std::pair(count - kMaxNamed, " further frames are damaged"),
+        {source.unmatched_color(),
+         " colour images have no depth image of the same time"},
+        {source.dropped(),
+         " frames arrived faster than they were processed"}}) {
+    if (number <= 0) continue;
+    lines.push_back(std::to_string(number) + what + " and are left out");
   }
   for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;
@@ -157,8 +154,16 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
   sequence.compares = settings.groundtruth != "none";
   if (sequence.compares) FindTruth(settings, &sequence);
   if (!settings.motion_guess.empty()) {
-    sequence.inputs.motion_guess = std::make_shared<Trajectory>(
-        ReadTrajectory(settings.motion_guess, &sequence.remarks));
+    Trajectory guess = ReadTrajectory(settings.motion_guess, &sequence.remarks);
+    const std::vector<double> times = sequence.source->timestamps();
+    if (!times.empty() &&
+        (guess.empty() || guess.back().timestamp < times.front() ||
+         guess.front().timestamp > times.back())) {
+      throw InputError(settings.motion_guess +
+                       ": has no pose at the time of the recording");
+    }
+    sequence.inputs.motion_guess =
+        std::make_shared<Trajectory>(std::move(guess));
   }
   return sequence;
 }

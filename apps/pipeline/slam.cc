@@ -14,8 +14,8 @@ Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
     : settings_(settings),
       odometry_(MakeOdometry(odometry, camera)),
       mapper_(settings.mapping, MakeTracker(odometry, camera)) {
-  if (settings.update_delay < 0) {
-    throw InputError("slam: update_delay must not be negative");
+  if (settings.update_delay < 0 || settings.update_delay > 1000000) {
+    throw InputError("slam: update_delay must be 0 to 1000000");
   }
 }
 
@@ -68,7 +68,7 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
   ApplyPendingUpdates(tracked.index, &result);
   result.odom_from_cam = odom_from_cam_;
   result.map_from_odom = map_from_odom_;
-  result.segment = reference_.has_value() ? segments_.at(*reference_) : 0;
+  result.segment = reference_ ? segments_.at(*reference_) : first_segment_;
   return result;
 }
 
@@ -145,18 +145,19 @@ void Slam::AddKeyframe(const TrackedFrame& tracked) {
 }
 
 void Slam::ApplyPendingUpdates(int frame, SlamFrame* result) {
-  const auto wait_for = [result](auto* pending) {
+  const auto wait_for = [result](auto pending) {
     const StageTimer timer(&result->wait_ms);
-    return pending->result.get();
+    return pending.result.get();
   };
   while (!updates_.empty() && updates_.front().frame <= frame) {
-    MapUpdate update = wait_for(&updates_.front());
-    updates_.pop_front();
-    Apply(std::move(update), result);
+    auto next = std::move(updates_.front());
+    updates_.pop_front();  // first, as the result may be an exception
+    Apply(wait_for(std::move(next)), result);
   }
   if (!search_.has_value() || search_->frame > frame) return;
-  const std::optional<Keyframe> found = wait_for(&*search_);
+  auto search = std::move(*search_);
   search_.reset();
+  const std::optional<Keyframe> found = wait_for(std::move(search));
   const bool is_lost = result->tracked.status == TrackingStatus::kLost;
   if (found.has_value() && is_lost) Adopt(*found);
 }

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
@@ -60,6 +61,7 @@ class Recording {
       : open_(std::move(open)), source_(open_()) {}
 
   const FrameSource& source() const { return *source_; }
+  const std::shared_ptr<std::mutex>& mutex() const { return mutex_; }
 
   std::shared_ptr<FrameSource> Begin() {
     if (is_used_) source_ = open_();
@@ -70,6 +72,7 @@ class Recording {
  private:
   std::function<std::shared_ptr<FrameSource>()> open_;
   std::shared_ptr<FrameSource> source_;
+  std::shared_ptr<std::mutex> mutex_ = std::make_shared<std::mutex>();
   bool is_used_ = false;
 };
 
@@ -171,11 +174,16 @@ Raises InputError for unreadable input.)");
       py::arg("associations") = py::none(), py::arg("depth_camera") = "",
       py::arg("depth_scale") = 0.0, py::arg("topics") = py::tuple());
   recording.def("__iter__", [](Recording* self) -> py::iterator {
-    const py::cpp_function next([source = self->Begin()] {
-      const ReleasedGil no_gil;
-      const std::optional<RgbdFrame> frame = source->Next();
-      return frame ? std::make_optional(frame->read()) : std::nullopt;
-    });
+    const py::cpp_function next(
+        [source = self->Begin(), mutex = self->mutex()] {
+          const ReleasedGil no_gil;
+          std::optional<RgbdFrame> frame;
+          {
+            const std::lock_guard<std::mutex> lock(*mutex);
+            frame = source->Next();
+          }
+          return frame ? std::make_optional(frame->read()) : std::nullopt;
+        });
     return py::module_::import("builtins").attr("iter")(next, py::none());
   });
   const auto property = PropertiesOf(&recording);
@@ -185,12 +193,14 @@ Raises InputError for unreadable input.)");
   property(
       "timestamps",
       [](const Recording& self) {
+        const std::lock_guard<std::mutex> lock(*self.mutex());
         return py::array(py::cast(self.source().timestamps()));
       },
       "(N,) of all frames, s; empty if they are not known in advance");
   recording.def(
       "ground_truth",
       [](const Recording& self) {
+        const std::lock_guard<std::mutex> lock(*self.mutex());
         return ArraysFromTrajectory(self.source().ground_truth());
       },
       "(timestamps (N,), world_from_cam (N, 4, 4)) of the recording; for a bag "

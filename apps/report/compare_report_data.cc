@@ -92,8 +92,8 @@ json Figures(const CsvTable& table) {
 json Sequences(const std::string& tables_file, const std::string& paths_file) {
   const json figures = Figures(CsvTable::Read(tables_file));
   const std::vector<PathRows> paths = ReadPaths(paths_file);
-  const size_t max_points =
-      kMaxComparedPoints / std::max<size_t>(paths.size(), 1);
+  const size_t max_points = std::max<size_t>(
+      1, kMaxComparedPoints / std::max<size_t>(1, paths.size()));
   json sequences = json::array();
   for (const PathRows& rows : paths) {
     const ReportThinning thinning(rows.size(), max_points);

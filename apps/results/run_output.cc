@@ -8,7 +8,6 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
-#include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/fusion/mesh_file.h"
@@ -87,7 +86,11 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
     std::filesystem::create_directory(folder_.staging_dir() / kDebug);
   }
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
-  if (!settings.save_cloud.empty()) RequireWritable(settings.save_cloud);
+  if (!settings.save_cloud.empty()) RequireCloudFile(settings.save_cloud);
+  if (!settings.save_mesh.empty() &&
+      settings.save_cloud == settings.save_mesh) {
+    throw InputError("--save_cloud and --save_mesh are the same file");
+  }
 }
 
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {

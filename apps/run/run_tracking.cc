@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <system_error>
 
 #include "apps/export/export_format.h"
 #include "apps/report/report_page.h"
@@ -38,8 +37,6 @@ constexpr int kSignals[] = {SIGINT, SIGTERM};
 volatile std::sig_atomic_t came = 0;
 struct sigaction before[2];
 
-void Remember(int signal) { came = signal; }
-
 // While this object lives and --finish_on_signal is set, SIGINT and SIGTERM ask
 // the program to stop early and to keep its results; a second signal ends it at
 // once. Without the flag, signals end the program as usual. Ignored signals
@@ -49,7 +46,7 @@ class StopSignal {
   StopSignal() {
     came = 0;
     struct sigaction action = {};
-    action.sa_handler = Remember;
+    action.sa_handler = [](int signal) { came = signal; };
     // A second one ends the program.
     action.sa_flags = SA_RESETHAND | SA_RESTART;
     sigemptyset(&action.sa_mask);
@@ -109,25 +106,6 @@ void WriteMapTables(const SequenceRun& run, const RunFolder& output) {
   output.WriteFile("keyframes.csv",
                    FormatKeyframesCsv(slam.Map(), slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
-}
-
-// Writes report.html into the unpublished folder; `out` is its final folder.
-// Returns the text that the program prints. If the disk is full, the partial
-// page is removed, `why_not` says so, and all other results stay.
-std::string WriteRunPage(const std::filesystem::path& staging_dir,
-                         const std::string& out, std::string* why_not) {
-  if (!HasReportLibrary()) {
-    return std::string("report in   ") + kNoReportLibrary + "\n";
-  }
-  try {
-    WriteReport("run", staging_dir.string());
-    return "report in   " + out + "/report.html\n";
-  } catch (const InputError& error) {
-    *why_not = error.what();
-    std::error_code ignored;
-    std::filesystem::remove(staging_dir / "report.html", ignored);
-    return "";
-  }
 }
 
 // Returns the exit code and prints one line on stderr unless it is kExitOk.
@@ -225,15 +203,29 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
     text += FormatSlamSummary(more["slam"]);
     WriteMapTables(*run, output.folder());
   }
+  // If something cannot be written, the other results stay.
   std::string missing;
+  const auto attempt = [&](const auto& write) {
+    try {
+      text += write();
+    } catch (const InputError& error) {
+      missing += (missing.empty() ? "" : "; ") + std::string(error.what());
+    }
+  };
   if (FLAGS_report) {
-    text += WriteRunPage(output.folder().staging_dir(), folder, &missing);
+    attempt([&] {
+      const bool has_page = HasReportLibrary();
+      if (has_page) WriteReport("run", output.folder().staging_dir());
+      return "report in   " +
+             (has_page ? folder + "/report.html" : kNoReportLibrary) + "\n";
+    });
   }
   output.folder().Publish();
-  // If the map cannot be saved, the results stay.
   if (!settings.save_map.empty()) {
-    SaveMap(settings.save_map, slam->Map());
-    text += "map in      " + settings.save_map + "\n";
+    attempt([&] {
+      SaveMap(settings.save_map, slam->Map());
+      return "map in      " + settings.save_map + "\n";
+    });
   }
   ExportOptions options;
   options.voxel = settings.output.voxel;
@@ -242,11 +234,7 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
        {std::pair(cloud, &ExportCloud), std::pair(mesh, &ExportMesh)}) {
     if (file.empty() || results.trajectory.empty()) continue;
     options.output = file;
-    try {
-      text += fuse(FinishedRun(folder), options);
-    } catch (const InputError& error) {
-      missing = error.what();
-    }
+    attempt([&, fuse = fuse] { return fuse(FinishedRun(folder), options); });
   }
   std::printf("%sresults in  %s\n", text.c_str(), folder.c_str());
   view.Finish(folder);

@@ -75,8 +75,8 @@ void ReadWords(const std::vector<std::string>& words, const std::string& where,
     // gflags would read a word only up to its first zero byte.
     if (word->size() < 2 || word->front() != '-' || *word == "--" ||
         word->find('\0') != std::string::npos) {
-      const bool is_of_list =
-          word != words.begin() && (word - 1)->back() == ',';
+      const bool is_of_list = word != words.begin() && !(word - 1)->empty() &&
+                              (word - 1)->back() == ',';
       throw InputError(where + "'" + *word + "' is not a flag; " +
                        (is_of_list ? "lists have no space after the comma"
                                    : "flags look like --name=value"));

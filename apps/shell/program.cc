@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <deque>
 #include <exception>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <system_error>
@@ -155,9 +156,11 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
     cv::setNumThreads(1);
     settings.Apply();
     const int exit_code = body();
-    if (std::fflush(stdout) != 0) {
-      throw InputError("the standard output cannot be written (" +
-                       std::generic_category().message(errno) + ")");
+    const bool is_written = std::fflush(stdout) == 0;
+    if (!is_written || std::ferror(stdout) != 0) {
+      throw InputError(
+          "the standard output cannot be written (" +
+          std::generic_category().message(is_written ? EIO : errno) + ")");
     }
     return exit_code;
   } catch (const UsageError& error) {
@@ -198,6 +201,14 @@ void Warn(const std::vector<std::string>& lines) {
 
 void RequireFlag(const std::string& name, const std::string& value) {
   if (value.empty()) throw UsageError("--" + name + " is needed; see --help");
+}
+
+void RequireOtherFolder(const std::string& flag, const std::string& folder,
+                        const std::string& other) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(folder, other, ignored) || folder == other) {
+    throw InputError("--" + flag + ": must be another folder than " + other);
+  }
 }
 
 int AvailableCores() {

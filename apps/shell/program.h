@@ -76,6 +76,11 @@ void Warn(const std::vector<std::string>& lines);
 // Ends RunProgram with one line on stderr and kExitUsage if the value is empty.
 void RequireFlag(const std::string& name, const std::string& value);
 
+// Throws InputError if the folder of a flag is `other`, whose files would be
+// replaced or mixed with others.
+void RequireOtherFolder(const std::string& flag, const std::string& folder,
+                        const std::string& other);
+
 // More threads than any machine could use here.
 inline constexpr int kMaxThreads = 256;
 

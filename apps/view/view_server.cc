@@ -133,7 +133,8 @@ class ViewServer::Impl {
 
   // Rejects other sites' requests: by a host name of theirs or from their page.
   bool IsOurs(const Request& request) const {
-    const std::string port = ":" + std::to_string(port_);
+    // Browsers leave out the usual port.
+    const std::string port = port_ == 80 ? "" : ":" + std::to_string(port_);
     const std::string host = request.get_header_value("Host");
     if (host != kHost + port && host != "localhost" + port) return false;
     return !request.has_header("Origin") ||

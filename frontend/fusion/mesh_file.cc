@@ -126,6 +126,13 @@ void WriteMesh(const std::string& path, const TriangleMesh& mesh) {
   WriteFileAtomically(path, FormatOf(path)(mesh));
 }
 
+void RequireCloudFile(const std::string& path) {
+  if (std::filesystem::path(path).extension() != ".ply") {
+    throw InputError(path + ": a point cloud needs the extension .ply");
+  }
+  RequireWritable(path);
+}
+
 void RequireMeshFile(const std::string& path) {
   FormatOf(path);
   RequireWritable(path);

@@ -29,6 +29,9 @@ void WriteMesh(const std::string& path, const TriangleMesh& mesh);
 // Throws InputError if WriteMesh would; to be called before long computations.
 void RequireMeshFile(const std::string& path);
 
+// The same for WritePly.
+void RequireCloudFile(const std::string& path);
+
 // A mesh as a binary glTF 2.0 file (.glb) with unlit colours, as images contain
 // the light already. In glTF y points up and z towards the viewer. The world,
 // in which y of the first camera points down, is therefore rotated around x.

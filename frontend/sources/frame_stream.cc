@@ -1,6 +1,7 @@
 #include "frontend/sources/frame_stream.h"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "core/util/format.h"
@@ -27,8 +28,11 @@ FrameStream::FrameStream(FrameSource* source, Prepare prepare, int threads,
       max_ahead_(threads + kMaxReady),
       max_damaged_(max_damaged),
       num_expected_(max_damaged ? source->timestamps().size() : 0) {
-  for (int i = 1; i < threads; ++i) {
-    workers_.emplace_back(&FrameStream::Work, this);
+  try {
+    for (int i = 1; i < threads; ++i) {
+      workers_.emplace_back(&FrameStream::Work, this);
+    }
+  } catch (const std::system_error&) {  // fewer threads will do
   }
 }
 

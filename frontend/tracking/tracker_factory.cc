@@ -33,10 +33,10 @@ std::unique_ptr<Tracker> MakeTracker(std::string_view name,
   } else if (kind != TrackerKind::kFeatures) {
     throw InputError("a direct tracker needs estimators of direct costs");
   }
+  auto frontend = MakeFrontend(parts.frontend, parts.images);
   if (kind == TrackerKind::kDirect) return direct;
   auto features = std::make_unique<FeatureTracker>(
-      MakeFrontend(parts.frontend, parts.images), std::move(parts.estimator),
-      parts.options);
+      std::move(frontend), std::move(parts.estimator), parts.options);
   if (direct == nullptr) return features;
   return std::make_unique<HybridTracker>(std::move(features), std::move(direct),
                                          kind == TrackerKind::kHybrid);

@@ -57,6 +57,7 @@ TEST_F(HashSequenceTest, SeesEveryInput) {
       {"s/depth/1.png", ""},
       {"s/camera.yaml", "fx: 501"},
       {"s/groundtruth.txt", ""},
+      {"s/calibration.txt", "500 500 320 240"},
   };
   for (const auto& change : kChanges) {
     const TempFolder& folder = folder_;
@@ -65,6 +66,8 @@ TEST_F(HashSequenceTest, SeesEveryInput) {
     WriteSequence("s");
   }
   std::filesystem::remove(folder_ / "s/groundtruth.txt");
+  EXPECT_NE(Hash(), before) << "the camera is still there";
+  std::filesystem::remove(folder_ / "s/calibration.txt");
   EXPECT_EQ(Hash(), before) << "all is as it was";
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibration/calibration_data.h"
 #include "apps/calibration/calibration_run.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/pipeline/slam.h"
@@ -327,6 +328,18 @@ TEST(CalibrationTest, AKnownLengthHasToMakeSense) {
   }
   expect("1000,5000,1", "no frame was tracked at 5000");
   expect("1000,1000.1,1", "hardly moved");
+}
+
+TEST(CalibrationTest, AKnownLengthDoesNotSpanLostFrames) {
+  CalibrationData data;
+  data.timestamps = {0.0, 1.0};
+  Trajectory path;
+  for (int i = 0; i <= 15; ++i) path.push_back({0.1 * i, Rigid3d()});
+  AddKnownDistances(path, "0.0,1.5,1.0", {}, &data);
+  EXPECT_EQ(data.views.distances.size(), 1u);
+  path.erase(path.begin() + 12, path.begin() + 14);
+  ExpectInputError([&] { AddKnownDistances(path, "0.0,1.5,1.0", {}, &data); },
+                   {"known_length: frames near 1.5 s were lost"});
 }
 
 // Fewer frames would make velocities, and with them readouts, too small.

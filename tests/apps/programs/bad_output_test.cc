@@ -44,7 +44,13 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            "--min_depth=4.2 --save_mesh={dir}/mesh.ply", 2,
            "--voxel or --max_depth: "},
           {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
-           "{seq}: is a folder, but a file is expected"},
+           "{seq}: a point cloud needs the extension .ply"},
+          {"the cloud is the ground truth", nullptr,
+           "--save_cloud={seq}/groundtruth.txt", 2,
+           "{seq}/groundtruth.txt: a point cloud needs the extension .ply"},
+          {"the cloud is the mesh", nullptr,
+           "--save_cloud={dir}/a.ply --save_mesh={dir}/a.ply", 2,
+           "--save_cloud and --save_mesh are the same file"},
       });
   ExpectEach(
       "",

@@ -340,6 +340,10 @@ TEST_F(BadInputTest, GroundTruth) {
            "{seq}/none.txt: cannot be opened"},
           {"a guess of motion that is broken", Text("guess.txt", "1 2\n"),
            "--motion_guess={seq}/guess.txt", 2, "{seq}/guess.txt:1: 2 columns"},
+          {"a guess of another time",
+           Text("guess.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"),
+           "--motion_guess={seq}/guess.txt", 2,
+           "{seq}/guess.txt: has no pose at the time of the recording"},
           {"one pose", truth(""), "", 0, ""},
           {"CRLF and a byte order mark", Windows("groundtruth.txt"), "", 0, ""},
       });

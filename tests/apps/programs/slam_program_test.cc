@@ -96,7 +96,7 @@ TEST_F(SlamProgramTest, SaysInOneLineWhatIsWrongWithMaps) {
   } cases[] = {
       {"--localise_only", "--localise_only needs --load_map"},
       {"--load_map=nowhere", "--load_map=nowhere: "},
-
+      {"--load_map=nowhere --calibrate", "--calibrate changes the camera"},
       {"--max_pairs=0", "max_pairs must be at least 1"},
   };
   for (const auto& [flags, says] : cases) {
@@ -106,6 +106,9 @@ TEST_F(SlamProgramTest, SaysInOneLineWhatIsWrongWithMaps) {
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/trajectory.txt"));
   }
+  const RunResult run = Run("same", "--save_map=" + (folder_ / "same"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--save_map: must be another folder than "));
 }
 
 }  // namespace

@@ -49,6 +49,7 @@ TEST(FlagReaderTest, RefusesAllElse) {
       {{"--tests"}, "unknown flag --tests; --help lists the flags"},
       {{"--test_word=a,", "b"},
        "'b' is not a flag; lists have no space after the comma"},
+      {{"--test_word", "", "b"}, "'b' is not a flag; flags look like"},
       {{"word"}, "'word' is not a flag"},
       {{"-"}, "'-' is not a flag"},
       {{"--"}, "'--' is not a flag"},

@@ -330,6 +330,7 @@ TEST(DirectOptionsTest, CheckSaysWhatIsWrong) {
   expect([](auto* o) { o->finest_level = -1; }, "level");
   expect([](auto* o) { o->information_factor = -1.0; }, "information_factor");
   expect([](auto* o) { o->information_factor = kNaN; }, "information_factor");
+  expect([](auto* o) { o->information_factor = 1.1; }, "information_factor");
 }
 
 TEST(DirectCostFactoryTest, UnknownNamesListWhatThereIs) {
