@@ -28,15 +28,15 @@ std::string Bar(const CalibratedParameter& parameter) {
   const auto sigmas = [&](double value) {
     return (value - parameter.before) / parameter.prior;
   };
+  const double found = sigmas(parameter.found);
+  if (std::abs(found) > 1.0) {
+    return Format("<b style=\"color:#d62728\">%s %+.1f sigma</b>",
+                  found > 0.0 ? "&rarr;" : "&larr;", found);
+  }
   const std::string text = Format(
       "<svg width=\"%.0f\" height=\"14\"><line x1=\"%.0f\" x2=\"%.0f\" "
       "y1=\"0\" y2=\"14\" stroke=\"#aaa\"/>",
       2.0 * kHalf, kHalf, kHalf);
-  const double found = sigmas(parameter.found);
-  if (std::abs(found) > 1.0) {
-    return text + Format("</svg> <b style=\"color:#d62728\">%s %+.1f sigma</b>",
-                         found > 0.0 ? "&rarr;" : "&larr;", found);
-  }
   const auto at = [&](double value) {
     return kHalf * (1.0 + std::clamp(sigmas(value), -1.0, 1.0));
   };
