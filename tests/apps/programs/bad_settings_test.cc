@@ -130,6 +130,8 @@ TEST_F(BadInputTest, Flags) {
            "loss 'tukey(-1)': the width must be a number from"},
           {"two losses for one cost", nullptr, "--loss=tukey,huber", 2,
            "'tukey,huber' names 2 losses for 1 costs"},
+          {"frontend that is not used", nullptr,
+           "--tracker=direct --frontend=magic", 2, "unknown frontend 'magic'"},
           {"frontend", nullptr, "--frontend=magic", 2,
            "unknown frontend 'magic'; available: klt, patch"},
           {"scale", nullptr, "--scale=iqr", 2,

@@ -206,6 +206,9 @@ TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   EXPECT_THAT(resumed.err, AllOf(StartsWith("[1/1] ok"), HasSubstr(run + "2")));
   EXPECT_TRUE(TimelessFiles(folder_ / "runs") == before);
   EXPECT_EQ(Run(Call("runs") + " --resume").err, "") << "nothing to do";
+  fs::remove(folder_ / ("runs/" + run + "1/metrics.json"));
+  EXPECT_EQ(CountLines(Run(Call("runs") + " --resume").err), 1)
+      << "a run without its results is repeated";
 
   // Another camera changes the hash of the inputs, so these runs are repeated.
   folder_.Write("data/xyz/camera.yaml", Read("data/xyz/camera.yaml") + "\n");
