@@ -60,7 +60,8 @@ int Main(const ExperimentSettings& settings, const ProgramInfo& info) {
                     ? WriteReport("comparison", FLAGS_output).c_str()
                     : kNoReportLibrary);
   }
-  return result.is_usable ? kExitOk : kExitTrackingFailed;
+  if (!result.is_usable) return kExitTrackingFailed;
+  return result.has_stopped ? kExitStopped : kExitOk;
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct ExperimentSettings {
 struct ExperimentResult {
   std::string report;
   bool is_usable = true;
+  bool has_stopped = false;  // a recording ended early, see FrameStream
 };
 
 // Runs the experiment of that name or on the recording in that folder. `output`

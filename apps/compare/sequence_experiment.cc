@@ -84,7 +84,7 @@ class SequenceExperiment {
   ExperimentResult Finish() const {
     WriteOutput(output_, "tables.csv", tables_);
     WriteOutput(output_, "paths.csv", paths_);
-    return {report_, any_tracked_ && stopped_.empty()};
+    return {report_, any_tracked_, !stopped_.empty()};
   }
 
  private:
@@ -108,7 +108,10 @@ class SequenceExperiment {
             return true;
           });
       Warn(DroppedFrames(*source, all[0]->damaged()));
-      if (!stopped.empty()) stopped_ = "Stopped early: " + stopped + "\n\n";
+      if (!stopped.empty()) {
+        Warn({"stopped early: " + stopped});
+        stopped_ = "Stopped early: " + stopped + "\n\n";
+      }
     }
     std::vector<LossRun> results;
     for (size_t i = 0; i < losses_.size(); ++i) {

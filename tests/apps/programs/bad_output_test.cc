@@ -78,7 +78,9 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            "the standard output cannot be written (No space left on device)"},
           {"evaluate: nobody takes more than a buffer", nullptr,
            "(exec >/dev/full; exec " + kBadEvaluation +
-               "--json --rpe_frames=1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16)",
+               "--json --rpe_frames="
+               "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,"
+               "24)",
            2, "the standard output cannot be written"},
       });
 }
