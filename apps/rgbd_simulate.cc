@@ -105,9 +105,8 @@ ProgramInfo Info(SimulateSettings* settings) {
 int Main(const SimulateSettings& settings, const ProgramInfo& /*info*/) {
   RequireFlag("output", settings.output);
   SyntheticOptions options = settings.options;
-  options.registration_error = Rigid3d(
-      Eigen::Quaterniond(Eigen::AngleAxisd(
-          settings.registration_turn * M_PI / 180.0, Eigen::Vector3d::UnitY())),
+  options.registration_error = Rigid3d::FromRotationVector(
+      {0.0, settings.registration_turn * M_PI / 180.0, 0.0},
       {settings.registration_shift, 0.0, 0.0});
   const CameraSetup setup =
       ResolveCameraSetup(settings.camera, settings.depth_camera);

@@ -11,9 +11,6 @@
 
 namespace rgbd_pose {
 
-template bool FactorSums<6>(const CompressedSums<6>& sums, double* residuals,
-                            double* jacobian);
-
 std::vector<std::string> CostNames() { return NamesOfTypes(ResidualTypes()); }
 
 std::unique_ptr<MotionCost> MakeCost(std::string_view name) {

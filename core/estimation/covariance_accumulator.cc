@@ -1,7 +1,6 @@
 #include "core/estimation/covariance_accumulator.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -38,8 +37,8 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   const MotionMatrix L = llt.matrixL();
   const MotionMatrix half =
       llt.matrixL().solve(unit.asDiagonal() * spurious * unit.asDiagonal());
-  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
-      llt.matrixL().solve(half.transpose()));
+  const auto eigen =
+      EigenOf(MotionMatrix(llt.matrixL().solve(half.transpose())));
   const MotionVector left =
       (1.0 - eigen.eigenvalues().array()).cwiseMax(0.0).sqrt();
   const MotionMatrix root = unit.cwiseInverse().asDiagonal() * L *

@@ -1,6 +1,5 @@
 #include "core/estimation/degeneracy.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -57,8 +56,7 @@ struct WeakDirection {
 };
 
 WeakDirection WeakestOf(const MotionMatrix& covariance, int first) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-      Eigen::Matrix3d(covariance.block<3, 3>(first, first)));
+  const auto eigen = EigenOf(covariance.block<3, 3>(first, first));
   return {std::sqrt(eigen.eigenvalues()[2]),
           covariance.middleCols<3>(first) * eigen.eigenvectors().col(2)};
 }
@@ -115,8 +113,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   // Scaled by what each parameter would be known to if it were the only one.
   MotionVector unit = hessian.diagonal();
   for (double& value : unit) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
-  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
-      unit.asDiagonal() * hessian * unit.asDiagonal());
+  const auto eigen = EigenOf(unit.asDiagonal() * hessian * unit.asDiagonal());
   if (!(eigen.eigenvalues()[0] > kSingular)) {
     result.reason = Describe(
         unit.cwiseProduct(eigen.eigenvectors().col(0)).cwiseQuotient(means),

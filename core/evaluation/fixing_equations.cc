@@ -1,6 +1,5 @@
 #include "core/evaluation/fixing_equations.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -20,8 +19,7 @@ constexpr double kNamedShare = 0.3;
 void NameAxes(const Eigen::Matrix<double, 3, Eigen::Dynamic>& part,
               const std::string& name, const char* relation,
               std::vector<std::string>* names) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(part *
-                                                            part.transpose());
+  const auto axes = EigenOf(part * part.transpose());
   if (axes.eigenvalues()[0] > kNamedShare) {
     names->push_back(name);
     return;
@@ -175,8 +173,8 @@ FixingDirections FixingEquations::Determined(double limit, double min_agreement,
   }
   overlapping = std::max(1.0, overlapping / std::max<size_t>(1, rows_.size()));
 
-  const Eigen::SelfAdjointEigenSolver<FixingMatrix> solver(
-      0.5 * (agreed_ + agreed_.transpose()) / overlapping);
+  const auto solver =
+      EigenOf(0.5 * (agreed_ + agreed_.transpose()) / overlapping);
   FixingDirections directions(7, 7);
   int determined = 0;
   int left = 7;

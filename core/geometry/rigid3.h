@@ -20,8 +20,10 @@ namespace rgbd_pose {
 
 // The shortest rotation vector of a rotation, rad.
 inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
+  const double sine = rotation.vec().norm();
+  if (sine == 0.0) return Eigen::Vector3d::Zero();
+  const double angle = 2.0 * std::atan2(sine, std::abs(rotation.w()));
+  return std::copysign(angle / sine, rotation.w()) * rotation.vec();
 }
 
 // [v]x, with [v]x w = v x w.
@@ -51,10 +53,8 @@ struct Rigid3d {
   static Rigid3d FromRotationVector(
       const Eigen::Vector3d& rotation,
       const Eigen::Vector3d& source_origin_in_target) {
-    const double angle = rotation.norm();
-    const Eigen::Vector3d axis = angle > 0.0 ? Eigen::Vector3d(rotation / angle)
-                                             : Eigen::Vector3d::UnitX();
-    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
+    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(rotation.norm(),
+                                                        rotation.normalized())),
                    source_origin_in_target);
   }
 

@@ -3,7 +3,6 @@
 #include <ceres/covariance.h>
 #include <ceres/crs_matrix.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <set>
@@ -31,9 +30,8 @@ MotionMatrix SqrtInformation(const MotionMatrix& information) {
   const MotionVector size =
       information.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
           [](double value) { return value > 0.0 ? value : 1.0; });
-  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
-      size.cwiseInverse().asDiagonal() * information *
-      size.cwiseInverse().asDiagonal());
+  const auto eigen = EigenOf(size.cwiseInverse().asDiagonal() * information *
+                             size.cwiseInverse().asDiagonal());
   // Rounding changes zero eigenvalues by about 1e-16.
   if (eigen.eigenvalues().minCoeff() < -1e-9) return none;
   return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *

@@ -2,9 +2,8 @@
 
 #include <ceres/sized_cost_function.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -40,16 +39,32 @@ struct CompressedSums {
 
 namespace compressed {
 
-// The Hessian's type for factorisation; never allocates memory. For K > 6,
-// fixed-size Eigen would unroll loops for half a minute of compile time.
-template <int K>
-using Factorable = Eigen::Matrix<double, K <= 6 ? K : Eigen::Dynamic,
-                                 K <= 6 ? K : Eigen::Dynamic, 0, K, K>;
-
 // Limits for H scaled to a diagonal of ones. Cholesky pivots below the first
 // may be pure rounding; eigenvalues below the second are.
 inline constexpr double kSafePivot = 1e-6;
 inline constexpr double kRounding = 2e-14;
+
+// H = L L^T: fills J[K][K] with L^T and r[K] with L^-1 g. Returns false if a
+// pivot may be rounding. Loops, as Eigen's Cholesky takes long to compile.
+template <int K>
+bool FactorRegular(const double* hessian, const double* gradient, double* r,
+                   double* J) {
+  for (int i = 0; i < K; ++i) {
+    double* const row = J + i * K;
+    r[i] = gradient[i];
+    for (int k = i; k < K; ++k) row[k] = hessian[i * K + k];
+    for (int m = 0; m < i; ++m) {
+      const double* const above = J + m * K;
+      r[i] -= above[i] * r[m];
+      for (int k = i; k < K; ++k) row[k] -= above[i] * above[k];
+    }
+    if (!(row[i] > kSafePivot * hessian[i * K + i])) return false;
+    const double root = std::sqrt(row[i]);
+    r[i] /= root;
+    for (int k = i; k < K; ++k) row[k] /= root;
+  }
+  return true;
+}
 
 // H = D V diag(l) V^T D with some l = 0; D^2 is the diagonal of H, so units do
 // not matter. Where l > 0, J = diag(sqrt l) V^T D, r = diag(1/sqrt l) V^T D^-1
@@ -59,27 +74,27 @@ inline constexpr double kRounding = 2e-14;
 template <int kMost = 12>
 void FactorSingular(int K, const double* hessian, const double* gradient,
                     double* r, double* J) {
-  using Matrix = Factorable<kMost>;
+  using Matrix =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
   Matrix scaled = Eigen::Map<const Matrix>(hessian, K, K);
   double D[kMost];
   for (int i = 0; i < K; ++i) {
     D[i] = scaled(i, i) > 0.0 ? std::sqrt(scaled(i, i)) : 1.0;
   }
   for (int i = 0; i < K * K; ++i) scaled(i) /= D[i / K] * D[i % K];
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(scaled);
-  const double smallest = kRounding * std::max(0.0, eigen.eigenvalues()[K - 1]);
-  for (int i = 0; i < K; ++i) {
-    const double value = eigen.eigenvalues()[i];
-    if (!(value > smallest)) continue;
+  const Eigen::JacobiSVD<Matrix, Eigen::NoQRPreconditioner> svd(
+      scaled, Eigen::ComputeFullV);
+  for (int i = 0; i < K; ++i) {  // the weakest is last
+    const double value = svd.singularValues()[i];
+    if (!(value > kRounding * svd.singularValues()[0])) break;
     const double root = std::sqrt(value);
-    const int row = K - 1 - i;  // the weakest is last
-    double along = 0.0;         // the gradient's part in this direction
+    double along = 0.0;  // the gradient's part in this direction
     for (int k = 0; k < K; ++k) {
-      const double direction = eigen.eigenvectors()(k, i);
-      J[row * K + k] = root * direction * D[k];
+      const double direction = svd.matrixV()(k, i);
+      J[i * K + k] = root * direction * D[k];
       along += direction / D[k] * gradient[k];
     }
-    r[row] = along / root;
+    r[i] = along / root;
   }
 }
 
@@ -100,15 +115,10 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   if (!sums.gradient.allFinite() || !sums.hessian.allFinite()) return false;
   Eigen::Map<RowMajor<K + 1, K>> J(jacobian);
   J.setZero();
-  const Eigen::LLT<compressed::Factorable<K>> cholesky(sums.hessian);
-  const auto pivots = cholesky.matrixLLT().diagonal().cwiseAbs2();
-  if (cholesky.info() == Eigen::Success &&
-      (pivots.array() >
-       compressed::kSafePivot * sums.hessian.diagonal().array())
-          .all()) {
-    r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
-    J.template topRows<K>() = cholesky.matrixU();
-  } else {
+  if (!compressed::FactorRegular<K>(sums.hessian.data(), sums.gradient.data(),
+                                    residuals, jacobian)) {
+    r.template head<K>().setZero();
+    J.setZero();
     compressed::FactorSingular(K, sums.hessian.data(), sums.gradient.data(),
                                residuals, jacobian);
   }

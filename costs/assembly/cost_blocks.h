@@ -95,8 +95,4 @@ class MotionSums {
 // A whole MotionCost as one Ceres block of 7 rows.
 using MotionBlock = CompressedBlock<6, MotionSums>;
 
-// Instantiated once, in cost_factory.cc: compiling it takes seconds.
-extern template bool FactorSums<6>(const CompressedSums<6>& sums,
-                                   double* residuals, double* jacobian);
-
 }  // namespace rgbd_pose

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <random>
 
 #include "core/estimation/correspondences.h"
@@ -99,20 +98,20 @@ class RandomWorld {
   // A predicted motion whose error is drawn from its covariance. The covariance
   // is random: all six parts are correlated, each of about `sigma` (rad, m).
   MotionPrior Prior(const Rigid3d& truth, double sigma) {
-    MotionMatrix spread = MotionMatrix::Identity();
-    for (double& value : spread.reshaped()) value += Extra(-0.5, 0.5);
-    MotionPrior prior;
-    const MotionMatrix covariance = sigma * sigma * spread * spread.transpose();
-    prior.information = covariance.inverse();
-    MotionVector unit;
+    // (I + v v^T)^-1 = I - v v^T / (1 + v^T v)
+    MotionVector unit, v;
     std::normal_distribution<double> normal;
     for (double& value : unit) value = normal(extra_generator_);
-    const MotionVector error = sigma * spread * unit;
-    const Eigen::Vector3d omega = -error.head<3>();
-    const Eigen::Quaterniond rotation(
-        Eigen::AngleAxisd(omega.norm(), omega.normalized()));
+    for (double& value : v) value = Extra(-1.0, 1.0);
+    MotionPrior prior;
+    prior.information =
+        (MotionMatrix::Identity() - v * v.transpose() / (1.0 + v.dot(v))) /
+        (sigma * sigma);
+    const MotionVector error = sigma * (unit + normal(extra_generator_) * v);
+    const Rigid3d turn =
+        Rigid3d::FromRotationVector(-error.head<3>(), {0, 0, 0});
     const Eigen::Vector3d C = truth.Inverse().translation - error.tail<3>();
-    prior.mean.rotation = rotation * truth.rotation;
+    prior.mean.rotation = turn.rotation * truth.rotation;
     prior.mean.translation = -(prior.mean.rotation * C);
     return prior;
   }

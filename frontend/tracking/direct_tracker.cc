@@ -1,6 +1,5 @@
 #include "frontend/tracking/direct_tracker.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -37,9 +36,7 @@ constexpr double kErrAlike = 2.0;
 
 // Returns the largest standard deviation in any direction of a covariance.
 double LargestSigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-      covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+  return std::sqrt(std::max(0.0, EigenOf(covariance).eigenvalues()[2]));
 }
 
 // A reference that keeps the images of its frame for the direct costs.
