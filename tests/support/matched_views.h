@@ -10,9 +10,9 @@
 
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
-#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/feature_tracker.h"
 #include "frontend/tracking/odometry.h"
+#include "tests/support/rendered_once.h"
 
 namespace rgbd_pose {
 
@@ -24,8 +24,7 @@ class MatchedViews {
   static constexpr int kPrev = 0;
   static constexpr int kCur = 15;
 
-  explicit MatchedViews(const std::string& frontend)
-      : dataset_(SyntheticOptions()) {
+  explicit MatchedViews(const std::string& frontend) {
     FrontendOptions options;
     options.camera = dataset_.camera().camera;
     frontend_ = MakeFrontend(frontend, options);
@@ -92,7 +91,12 @@ class MatchedViews {
     EXPECT_LE((end.translation - truth.translation).norm(), max_error);
   }
 
-  SyntheticDataset dataset_;
+  static const RenderedOnce& Room() {
+    static const RenderedOnce room((SyntheticOptions()));
+    return room;
+  }
+
+  const RenderedOnce& dataset_ = Room();
   std::unique_ptr<Frontend> frontend_;
   Rigid3d cur_from_prev_;
 };

@@ -46,11 +46,15 @@ inline TrackedSequence TrackAll(const Dataset& dataset, const std::string& loss,
 }
 
 // The room seen by a camera that moves along the given path.
-inline SyntheticDataset Room(const std::string& path, int frames) {
+inline SyntheticOptions RoomOptions(const std::string& path, int frames) {
   SyntheticOptions options;
   options.path = path;
   options.frames = frames;
-  return SyntheticDataset(options);
+  return options;
+}
+
+inline SyntheticDataset Room(const std::string& path, int frames) {
+  return SyntheticDataset(RoomOptions(path, frames));
 }
 
 // The frame with a black image, in a new matrix: assigning cv::Mat::zeros would

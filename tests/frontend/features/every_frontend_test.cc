@@ -13,6 +13,7 @@
 #include "frontend/tracking/feature_tracker.h"
 #include "frontend/tracking/odometry.h"
 #include "tests/support/matched_views.h"
+#include "tests/support/rendered_once.h"
 
 namespace rgbd_pose {
 namespace {
@@ -75,7 +76,7 @@ TEST_P(EveryFrontendTest, KeepsNothingOfTheCallersImages) {
   options.path = "pan_tilt";
   options.frames = 60;
   options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
-  const SyntheticDataset camera(options);
+  static const RenderedOnce camera(options);
   FrontendOptions frontend;
   frontend.camera = camera.camera().camera;
   std::vector<Odometry> odometries;  // one gets new frames, one reused ones

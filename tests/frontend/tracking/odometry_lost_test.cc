@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frontend/tracking/odometry.h"
+#include "tests/support/rendered_once.h"
 #include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
@@ -229,7 +230,12 @@ class DarknessTest : public ::testing::TestWithParam<LostPolicy> {
         .translation.norm();
   }
 
-  SyntheticDataset room_ = Room("circle", 120);
+  static const RenderedOnce& Circle() {
+    static const RenderedOnce room(RoomOptions("circle", 120));
+    return room;
+  }
+
+  const RenderedOnce& room_ = Circle();
 };
 
 TEST_P(DarknessTest, AMotionGuessIsFollowedAndSaidToBe) {

@@ -42,11 +42,11 @@ struct ShutterTrust {
 
 class ShutterTrackersTest : public testing::TestWithParam<ShutterTrust> {
  protected:
-  void ExpectUndone(const Shutters& shutters) {
+  // All trackers share the sequences.
+  void ExpectUndone(const ShutterSequence& sequence) {
     const auto& [tracker, at_most, ignored_at_least] = GetParam();
-    const double global =
-        PositionError(ShutterSequence("handheld", {}), tracker);
-    const ShutterSequence sequence("handheld", shutters);
+    static const ShutterSequence without("handheld", {});
+    const double global = PositionError(without, tracker);
     const double undone = PositionError(sequence, tracker);
     EXPECT_LT(undone, at_most * global);
     EXPECT_GT(PositionError(sequence, tracker, ShutterUse::kNone),
@@ -54,14 +54,24 @@ class ShutterTrackersTest : public testing::TestWithParam<ShutterTrust> {
   }
 };
 
-TEST_P(ShutterTrackersTest, FromTheTop) { ExpectUndone(RollingShutters(1.0)); }
+TEST_P(ShutterTrackersTest, FromTheTop) {
+  static const ShutterSequence sequence("handheld", RollingShutters(1.0));
+  ExpectUndone(sequence);
+}
 TEST_P(ShutterTrackersTest, FromTheBottom) {
-  ExpectUndone(RollingShutters(-1.0));
+  static const ShutterSequence sequence("handheld", RollingShutters(-1.0));
+  ExpectUndone(sequence);
 }
 
 // Depth 15 ms earlier or later is displaced by up to 10 px here.
-TEST_P(ShutterTrackersTest, LaterDepth) { ExpectUndone({{}, {}, 0.015}); }
-TEST_P(ShutterTrackersTest, EarlierDepth) { ExpectUndone({{}, {}, -0.015}); }
+TEST_P(ShutterTrackersTest, LaterDepth) {
+  static const ShutterSequence sequence("handheld", {{}, {}, 0.015});
+  ExpectUndone(sequence);
+}
+TEST_P(ShutterTrackersTest, EarlierDepth) {
+  static const ShutterSequence sequence("handheld", {{}, {}, -0.015});
+  ExpectUndone(sequence);
+}
 
 INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
                          testing::Values(ShutterTrust{"features", 2.5, 5.0},
