@@ -11,39 +11,41 @@ namespace {
 // Depth assumed for a point without a known depth, m.
 constexpr double kUsualDepth = 1.0 / kRoomInverseDepth;
 
-// The image point of a point (at the stamp) with this shutter. `moved` is the
-// point in camera axes at the exposure time of its row.
+// The image point of a point (at the stamp) with this shutter. `row`: about
+// where it is. `moved` is the point in camera axes at the exposure time.
 Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
                            const Twist& twist, const Eigen::Vector3d& point,
-                           Eigen::Vector3d* moved) {
-  Eigen::Vector2d pixel = camera.Project(point);
-  *moved = point;
+                           double row, Eigen::Vector3d* moved) {
   // The time depends on the row where the point is seen, and the row on the
   // time. The second iteration reduces the remaining error to a hundredth.
+  Eigen::Vector2d pixel;
   for (int step = 0; step < 2; ++step) {
-    *moved = twist.MovedPoint(point, shutter.RowTime(pixel.y(), camera.height));
-    if (!(moved->z() > 0.0)) return pixel;
+    *moved = twist.MovedPoint(point, shutter.RowTime(row, camera.height));
+    if (!(moved->z() > 0.0)) return camera.Project(point);
     pixel = camera.Project(*moved);
+    row = pixel.y();
   }
   return pixel;
 }
 
 // The observation along a ray (a, b, 1) that was seen `seconds` after the
-// stamp. Depth is looked up at the position and time of its exposure. This
-// position depends on the depth itself: it is iterated from the guess `depth`.
+// stamp, in `row`. Depth is looked up at the position and time of its exposure.
+// This depends on the depth itself: it is iterated from the guess `depth`.
 Observation ObserveMoving(const Frame& frame, const Camera& camera,
                           const FrameTiming& timing, const Eigen::Vector3d& ray,
-                          double seconds, double depth, double sigma_px,
+                          double row, double depth, double sigma_px,
                           const DepthLookupOptions& depth_options) {
   constexpr double kSmallChange = 0.01;  // relative depth: a tenth of a pixel
   constexpr int kDepthSteps = 3;
   const Twist& twist = timing.twist;
+  const double seconds = timing.color.RowTime(row, camera.height);
   DepthSample sample;
-  Eigen::Vector2d in_depth, in_depth_place;
+  Eigen::Vector2d in_depth(0.0, row), in_depth_place;
   Eigen::Vector3d point = twist.MovedPoint(ray * depth, -seconds);
   for (int step = 0; step < kDepthSteps; ++step) {
     Eigen::Vector3d measured;
-    in_depth = SeenByRows(camera, timing.depth, twist, point, &measured);
+    in_depth =
+        SeenByRows(camera, timing.depth, twist, point, in_depth.y(), &measured);
     in_depth_place = measured.head<2>() / measured.z();
     sample = LookUpDepth(frame, in_depth.x(), in_depth.y(), depth_options);
     if (sample.depth == 0.0) break;
@@ -80,9 +82,8 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
   if (!ideal.allFinite()) return {ideal.x(), ideal.y(), 0.0, sigma_px};
   const Eigen::Vector3d ray = camera.Ray(ideal.x(), ideal.y());
   if (!timing.IsOneMoment()) {
-    return ObserveMoving(frame, camera, timing, ray,
-                         timing.color.RowTime(v, camera.height), kUsualDepth,
-                         sigma_px, depth_options);
+    return ObserveMoving(frame, camera, timing, ray, v, kUsualDepth, sigma_px,
+                         depth_options);
   }
   const DepthSample sample = LookUpDepth(frame, u, v, depth_options);
   const Eigen::Vector3d normal =
@@ -97,18 +98,17 @@ Observation ObserveAgain(const Frame& frame, const Camera& camera,
   Eigen::Vector3d seen;
   const Eigen::Vector2d pixel =
       SeenByRows(camera, moved_by.color, moved_by.twist,
-                 camera.Ray(before.u, before.v) * depth, &seen);
-  const FrameTiming timing = frame.Timing();
-  return ObserveMoving(frame, camera, timing, seen / seen.z(),
-                       timing.color.RowTime(pixel.y(), camera.height), seen.z(),
-                       before.sigma_px, depth_options);
+                 camera.Ray(before.u, before.v) * depth, before.v, &seen);
+  return ObserveMoving(frame, camera, frame.Timing(), seen / seen.z(),
+                       pixel.y(), seen.z(), before.sigma_px, depth_options);
 }
 
 Eigen::Vector2d ImagePoint(const Camera& camera, const FrameTiming& timing,
                            const Eigen::Vector3d& point) {
   if (timing.color.IsGlobal()) return camera.Project(point);
   Eigen::Vector3d moved;
-  return SeenByRows(camera, timing.color, timing.twist, point, &moved);
+  return SeenByRows(camera, timing.color, timing.twist, point,
+                    camera.Project(point).y(), &moved);
 }
 
 double LargestFlow(const Camera& camera, const FrameTiming& timing,
