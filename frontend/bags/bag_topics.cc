@@ -4,6 +4,7 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/bags/ros_image.h"
 
 namespace rgbd_pose {
 namespace {
