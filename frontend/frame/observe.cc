@@ -11,8 +11,8 @@ namespace {
 // Depth assumed for a point without a known depth, m.
 constexpr double kUsualDepth = 1.0 / kRoomInverseDepth;
 
-// The image point of a point (at the stamp) with this shutter. `row`: about
-// where it is. `moved` is the point in camera axes at the exposure time.
+// The image point of a point (at the stamp) with this shutter. `row` is a first
+// guess. `moved` is the point in camera axes at the exposure time of its row.
 Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
                            const Twist& twist, const Eigen::Vector3d& point,
                            double row, Eigen::Vector3d* moved) {
@@ -21,7 +21,7 @@ Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
   Eigen::Vector2d pixel;
   for (int step = 0; step < 2; ++step) {
     *moved = twist.MovedPoint(point, shutter.RowTime(row, camera.height));
-    if (!(moved->z() > 0.0)) return camera.Project(point);
+    if (!(moved->z() > 0.0)) return step > 0 ? pixel : camera.Project(point);
     pixel = camera.Project(*moved);
     row = pixel.y();
   }

@@ -20,6 +20,8 @@ TEST(ParallelForTest, DoesEachTaskOnceOnTheThreadThatItsNumberGives) {
   });
   EXPECT_EQ(calls, std::vector<int>(kTasks, 1));
   EXPECT_EQ(threads[0], std::this_thread::get_id());
+  EXPECT_NE(threads[1], threads[0]);
+  EXPECT_NE(threads[2], threads[1]);
   for (int i = kThreads; i < kTasks; ++i) {
     EXPECT_EQ(threads[i], threads[i - kThreads]) << i;
   }
