@@ -119,7 +119,7 @@ could use.)");
   property("num_rejected", &EstimateResult::num_rejected,
            "ignored rows: not finite, or with an invalid depth");
   property("sigma", &MotionEstimate::sigma,
-           "robust spread of the whitened residuals, ideally 1");
+           "robust spread of the residuals over the assumed noise");
   property("initial_cost", &MotionEstimate::initial_cost,
            "robust cost at the initial guess");
   property("final_cost", &MotionEstimate::final_cost,

@@ -102,7 +102,7 @@ void BindTrackedFrame(py::module_* module) {
   property("inliers", &TrackedFrame::inliers, "number of inliers among these");
   property("iterations", &TrackedFrame::iterations, "solver iterations");
   property("sigma", &TrackedFrame::sigma,
-           "spread of the whitened residuals, ideally 1");
+           "spread of the residuals over the assumed noise");
   property("track_ms", &TrackedFrame::track_ms, "total time of tracking, ms");
   property("match_ms", &TrackedFrame::match_ms, "part of track_ms: matching");
   property("solve_ms", &TrackedFrame::solve_ms,

@@ -108,7 +108,7 @@ function tracking(data) {
             ticktext: [...STATUS.map(s => s.name), 'reference']}},
     {title: key(COLOR.sky) + 'features matched   ' + key(COLOR.blue) +
          'inliers', y: 'features'},
-    {title: 'Sigma, ideally 1 (dashed)', y: 'sigma', weight: 0.8},
+    {title: 'Sigma of the residuals (dashed: 1)', y: 'sigma', weight: 0.8},
   ];
   const traces = STATUS.map((status, code) => ({
     type: 'scatter', mode: 'markers', name: status.name,

@@ -43,7 +43,7 @@ function showStatus() {
       figureTile(`${digits(median(recent.map(f => f.ms)), 2)} ms`,
           'to track a frame, median of the last 30'),
       figureTile(String(frame.matches), `matches, ${agree} % of them inliers`),
-      figureTile(digits(frame.sigma, 2), 'sigma of the residuals; ideally 1'),
+      figureTile(digits(frame.sigma, 2), 'sigma: residuals over assumed noise'),
       figureTile(String(map.keyframes.size), `keyframes, ${map.links.length} pairs`),
       figureTile(String(map.loops), 'loop closures'));
 }
