@@ -106,10 +106,14 @@ std::string FormatConsistency(const RunConsistency& consistency) {
     return Format("  %-30s%12d%12d%12.2f%12.2f\n", what.c_str(), c.count,
                   c.wrong, c.nees, c.median);
   };
-  return Format(
-             "\nErrors and covariances (ground truth: sigma %g mm, %g deg)\n",
-             noise.translation * kMillimetresPerMetre,
-             noise.rotation * kDegreesPerRadian) +
+  const bool exact = noise.translation == 0.0 && noise.rotation == 0.0;
+  const std::string truth =
+      exact ? "assumed exact"
+            : Format("sigma %g mm, %g deg",
+                     noise.translation * kMillimetresPerMetre,
+                     noise.rotation * kDegreesPerRadian);
+  return Format("\nErrors and covariances (ground truth: %s)\n",
+                truth.c_str()) +
          Format("%-32s%12s%12s%12s%12s\n", "", "evaluated", "wrong", "NEES",
                 "median") +
          line(Format("frames, of %d ok", consistency.ok),

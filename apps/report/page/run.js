@@ -138,7 +138,12 @@ function metrics(data) {
           `Of ${frames.count} evaluated frames with status ok, ${frames.wrong} are ` +
           'wrong: their error exceeds five sigmas of their own covariance. Squared ' +
           `errors are on average ${frames.count ? digits(frames.nees, 3) : 'n/a'} times ` +
-          'those that the covariances predict (NEES).'));
+          'those that the covariances predict (NEES). The ground truth is ' +
+          (e.consistency.truth_sigma_m || e.consistency.truth_sigma_deg ?
+          `taken with sigmas of ${digits(e.consistency.truth_sigma_m * 1000, 3)} mm and ` +
+          `${digits(e.consistency.truth_sigma_deg, 3)}°.` :
+          'assumed to be exact: if it was measured, rgbd_evaluate takes its error ' +
+          '(--truth_sigma_metres, --truth_sigma_degrees).')));
     }
     element.append(make('h3', {}, 'Run'));
   }

@@ -124,6 +124,13 @@ TEST(EvaluationReportTest, JsonHasTheSameFigures) {
   EXPECT_DOUBLE_EQ(json.at("final_pose").at("rotation_deg"), 1.0);
 }
 
+TEST(EvaluationReportTest, SaysWhenTheTruthIsAssumedToBeExact) {
+  EvaluationReport report = MakeReport();
+  report.consistency->truth_noise = {};
+  EXPECT_NE(FormatEvaluation(report).find("(ground truth: assumed exact)"),
+            std::string::npos);
+}
+
 TEST(EvaluationReportTest, NothingToMeasureIsNull) {
   EvaluationReport report = MakeReport();
   report.final_pose.reset();
