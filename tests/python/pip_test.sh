@@ -1,10 +1,10 @@
 #!/bin/sh
 # `pip install .` in a fresh virtual environment, without the network: the
 # module can be imported, has its stubs, and can be removed.
-# usage: pip_test.sh PYTHON SOURCE_FOLDER BUILD_FOLDER
+# usage: pip_test.sh PYTHON SOURCE_FOLDER [BUILD_FOLDER]
+# Without BUILD_FOLDER everything is compiled, in a copy of the sources.
 set -eu
-python=$1 sources=$2
-export RGBD_POSE_BUILD_DIR="$3"
+python=$1 sources=$2 build=${3-}
 unset PYTHONPATH
 if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
   echo "skipped: needs python3-venv"
@@ -12,6 +12,15 @@ if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
 fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+if [ -n "$build" ]; then
+  export RGBD_POSE_BUILD_DIR="$build"
+else
+  unset RGBD_POSE_BUILD_DIR
+  mkdir "$folder/sources"
+  tar -C "$sources" --exclude='./build*' --exclude=./.git -c . |
+    tar -C "$folder/sources" -x
+  sources=$folder/sources
+fi
 # Uses the distribution's numpy.
 "$python" -m venv --system-site-packages "$folder/venv"
 pip="$folder/venv/bin/python -m pip --disable-pip-version-check"
