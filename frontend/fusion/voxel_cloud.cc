@@ -1,8 +1,7 @@
 #include "frontend/fusion/voxel_cloud.h"
 
-#include <opencv2/core/fast_math.hpp>
-
 #include <cmath>
+#include <opencv2/core/fast_math.hpp>
 
 #include "frontend/fusion/voxel_key.h"
 
