@@ -5,12 +5,12 @@
 #include <chrono>
 #include <cstdio>
 
-#include "apps/calibration/calibration_run.h"
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/results/run_folder.h"
 #include "apps/shell/program.h"
 #include "core/util/format.h"
+#include "frontend/calibration/calibration_run.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
 

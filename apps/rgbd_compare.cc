@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "apps/compare/experiment.h"
-#include "apps/pipeline/settings.h"
 #include "apps/report/report_page.h"
 #include "apps/shell/program.h"
 #include "core/geometry/camera.h"
+#include "frontend/settings/settings.h"
 #include "robust/m_estimator.h"
 
 DEFINE_bool(report, true, "write OUTPUT/report.html");

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "apps/pipeline/sequence.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
+#include "frontend/settings/sequence.h"
 #include "frontend/sources/tum_writer.h"
 
 DEFINE_string(output, "", "folder to create, in TUM RGB-D layout");

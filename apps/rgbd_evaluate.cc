@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/odometry_run.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_tables.h"
 #include "apps/shell/program.h"
@@ -16,6 +15,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "core/util/units.h"
+#include "frontend/slam/sequence_run.h"
 
 DEFINE_string(estimate, "", "the estimated trajectory, as TUM text");
 DEFINE_string(run, "",

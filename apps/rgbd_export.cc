@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "apps/export/export_format.h"
-#include "apps/pipeline/settings.h"
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "frontend/settings/settings.h"
 
 namespace rgbd_pose {
 namespace {

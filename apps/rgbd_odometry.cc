@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/sequence.h"
 #include "apps/run/run_tracking.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
+#include "frontend/settings/sequence.h"
 
 DEFINE_bool(validate_only, false,
             "only read every image and print the speed; needs no --output");

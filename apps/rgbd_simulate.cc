@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "frontend/files/camera_file.h"
+#include "frontend/settings/settings.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_scene.h"

@@ -8,15 +8,15 @@
 #include <optional>
 #include <string>
 
-#include "apps/calibration/calibration_run.h"
-#include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/sequence.h"
 #include "apps/results/calibration_output.h"
 #include "apps/run/run_tracking.h"
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/map/map_folder.h"
+#include "frontend/calibration/calibration_run.h"
+#include "frontend/settings/sequence.h"
+#include "frontend/slam/map_folder.h"
+#include "frontend/slam/sequence_run.h"
 
 DEFINE_bool(calibrate, false,
             "first calibrate the camera as rgbd_calibrate does, and use the "

@@ -4,7 +4,7 @@
 #include <limits>
 #include <opencv2/core/eigen.hpp>
 
-#include "apps/pipeline/settings.h"
+#include "frontend/settings/settings.h"
 
 #ifdef RGBD_POSE_HAS_OPENCV_RGBD
 #include <opencv2/rgbd.hpp>

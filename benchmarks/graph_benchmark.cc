@@ -16,7 +16,7 @@
 #include "benchmarks/bundle_adjustment.h"
 #include "benchmarks/simulated_graph.h"
 #include "core/pose_graph/pose_graph.h"
-#include "frontend/mapping/keyframe_graph.h"
+#include "frontend/slam/keyframe_graph.h"
 #include "robust/m_estimator.h"
 
 namespace rgbd_pose {

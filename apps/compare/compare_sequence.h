@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/odometry_run.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/slam/sequence_run.h"
 
 namespace rgbd_pose {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
+#include "frontend/settings/settings.h"
 
 namespace rgbd_pose {
 

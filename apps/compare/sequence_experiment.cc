@@ -5,12 +5,12 @@
 
 #include "apps/compare/compare_sequence.h"
 #include "apps/compare/experiment.h"
-#include "apps/pipeline/sequence.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
+#include "frontend/settings/sequence.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 namespace rgbd_pose {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/sequence.h"
 #include "apps/results/run_output.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
@@ -14,6 +13,7 @@
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 #include "frontend/fusion/cloud_fusion.h"
+#include "frontend/settings/sequence.h"
 
 namespace rgbd_pose {
 

@@ -1,11 +1,11 @@
 #include <cstdlib>
 
 #include "apps/export/export_format.h"
-#include "apps/pipeline/settings.h"
 #include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
+#include "frontend/settings/settings.h"
 #include "frontend/sources/frame_stream.h"
 
 namespace rgbd_pose {

@@ -4,7 +4,6 @@
 #include <map>
 #include <string>
 
-#include "apps/calibration/calibration_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
@@ -13,6 +12,7 @@
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/calibration/calibration_run.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
 

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
@@ -20,6 +19,7 @@
 #include "core/initial_guess/initial_guess.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "frontend/settings/settings.h"
 
 namespace py = pybind11;
 

@@ -7,12 +7,12 @@
 #include <string>
 #include <utility>
 
-#include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/tracker_bindings.h"
+#include "frontend/settings/settings.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace py = pybind11;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
+#include "frontend/settings/settings.h"
 
 // Keyword arguments from a table of settings. The functions take py::kwargs and
 // define their own signatures, because pybind11 only knows fixed arguments.

@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/tracker_bindings.h"
 #include "core/util/input_error.h"
-#include "frontend/map/map_folder.h"
+#include "frontend/settings/settings.h"
+#include "frontend/slam/map_folder.h"
 
 namespace py = pybind11;
 

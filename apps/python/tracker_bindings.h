@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
@@ -21,6 +19,8 @@
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/frame/frame.h"
+#include "frontend/settings/settings.h"
+#include "frontend/slam/sequence_run.h"
 
 namespace rgbd_pose {
 

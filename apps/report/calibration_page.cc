@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/calibration/calibration_verdict.h"
 #include "apps/figures/svg_chart.h"
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
+#include "frontend/calibration/calibration_verdict.h"
 
 namespace rgbd_pose {
 namespace {

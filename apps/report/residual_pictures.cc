@@ -2,11 +2,11 @@
 #include <cmath>
 #include <vector>
 
-#include "apps/calibration/calibration_result.h"
 #include "apps/figures/svg_chart.h"
 #include "apps/report/report_page.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
+#include "frontend/calibration/calibration_result.h"
 
 namespace rgbd_pose {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "apps/calibration/calibration_verdict.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
+#include "frontend/calibration/calibration_verdict.h"
 
 namespace rgbd_pose {
 

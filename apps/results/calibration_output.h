@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/calibration/calibration_run.h"
+#include "frontend/calibration/calibration_run.h"
 
 namespace rgbd_pose {
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/settings.h"
 #include "apps/results/run_folder.h"
 #include "apps/shell/program.h"
 #include "frontend/frame/depth_lookup.h"
+#include "frontend/settings/settings.h"
+#include "frontend/slam/sequence_run.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/frame_source.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/slam.h"
+#include "frontend/slam/slam.h"
 
 namespace rgbd_pose {
 

@@ -16,7 +16,7 @@
 #include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
 #include "frontend/frame/depth_lookup.h"
-#include "frontend/map/map_folder.h"
+#include "frontend/slam/map_folder.h"
 
 DEFINE_int32(threads, 0,
              "threads that read images ahead and track; 0: one for each core; "

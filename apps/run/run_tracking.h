@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "apps/calibration/calibration_run.h"
-#include "apps/pipeline/sequence.h"
 #include "apps/results/run_output.h"
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"
+#include "frontend/calibration/calibration_run.h"
+#include "frontend/settings/sequence.h"
 
 // Of rgbd_odometry and rgbd_slam, like --report and --finish_on_signal.
 DECLARE_int32(threads);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
+#include "core/util/setting.h"
 
 namespace rgbd_pose {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/settings.h"
 #include "apps/view/view_server.h"
 #include "apps/view/view_state.h"
+#include "frontend/settings/settings.h"
+#include "frontend/slam/sequence_run.h"
 
 namespace rgbd_pose {
 

@@ -14,7 +14,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/frame.h"
-#include "frontend/mapping/mapper.h"
+#include "frontend/slam/mapper.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {

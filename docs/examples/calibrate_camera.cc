@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "rgbd_pose/apps/calibration/calibration_run.h"
+#include "rgbd_pose/frontend/calibration/calibration_run.h"
 #include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
 
 int main() {

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-#include "rgbd_pose/apps/pipeline/settings.h"
+#include "rgbd_pose/frontend/settings/settings.h"
 #include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
 #include "rgbd_pose/frontend/sources/frame_assembly.h"
 

@@ -1,10 +1,10 @@
 // A map of what your camera sees, kept, and the path corrected in it.
 #include <cstdio>
 
-#include "rgbd_pose/apps/pipeline/slam.h"
 #include "rgbd_pose/core/util/input_error.h"
-#include "rgbd_pose/frontend/map/map_folder.h"
 #include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/frontend/slam/map_folder.h"
+#include "rgbd_pose/frontend/slam/slam.h"
 
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours

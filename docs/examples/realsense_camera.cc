@@ -3,7 +3,7 @@
 #include <librealsense2/rs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "rgbd_pose/apps/pipeline/settings.h"
+#include "rgbd_pose/frontend/settings/settings.h"
 #include "rgbd_pose/frontend/sources/latest_frame.h"
 
 class RealSense final : public rgbd_pose::FrameSource {

@@ -50,16 +50,13 @@ room frontend/sources 'core/|frontend/' "$opencv|OpenNI\.h"
 room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"
-room frontend/map 'core/|frontend/' "$opencv|fcntl.h|unistd.h|sys/file.h"
+room frontend/settings 'core/|robust|costs|frontend/' 'none'
+room frontend/slam 'core/|robust|costs|frontend/' "$opencv|ceres/|fcntl.h|unistd.h|sys/file.h"
+room frontend/calibration 'core/|costs|frontend/' 'Eigen/'
 room frontend/fusion 'core/|frontend/' "$opencv"
-# Part of the library apps/pipeline, because it needs losses and costs.
-room frontend/mapping 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
-# A library without flags and JSON.
-room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
-room apps/calibration 'core/|costs|frontend/|apps/pipeline' 'Eigen/'
 room apps/shell 'core/|apps/' "$libraries"
 room apps/figures 'core/|apps/' 'none'
 room apps/results "$programs" "$libraries"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "frontend/map/map_folder.h"
+#include "frontend/slam/map_folder.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace rgbd_pose {

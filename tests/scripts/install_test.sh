@@ -44,8 +44,8 @@ cmake --install "$build" --prefix "$work/first" >"$work/log" 2>&1 ||
 mv "$work/first" "$prefix"
 ! grep -rlF -e "$source/" -e "$build/" "$prefix" >"$work/log" ||
   fail "these files tell where they were built"
-[ "$(ls -m "$prefix/include/rgbd_pose/apps")" = "calibration, pipeline" ] ||
-  fail "headers of the programs"
+[ "$(ls -m "$prefix/include/rgbd_pose")" = "core, costs, frontend, robust" ] ||
+  fail "a user's program needs headers of these rooms only"
 ! grep -rnE '#include "' "$prefix/include" | grep -v 'include "rgbd_pose/' \
   >"$work/log" || fail "these includes lack rgbd_pose/"
 

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "frontend/map/keyframe_map.h"
+#include "frontend/slam/keyframe_map.h"
 
 namespace rgbd_pose {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "apps/calibration/calibration_result.h"
 #include "apps/report/report_data.h"
+#include "frontend/calibration/calibration_result.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

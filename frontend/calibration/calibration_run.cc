@@ -1,0 +1,168 @@
+#include "frontend/calibration/calibration_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/util/input_error.h"
+#include "core/util/quantile.h"
+#include "frontend/calibration/calibration_verdict.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Status = CalibratedParameter::Status;
+
+// Merges the result of a further pass, which started from the last result and
+// is closer to the linearisation point. Returns whether it is usable.
+bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
+            const CalibrationResult& further, CalibrationResult* all) {
+  ++all->passes;
+  const std::string disagree = WhyHalvesDisagree(settings, further);
+  if (!disagree.empty()) {
+    all->is_accepted = false;
+    all->reason = disagree;
+    all->halves = further.halves;
+    all->halves_spread = further.halves_spread;
+    all->camera = first;
+    return false;
+  }
+  if (further.held_out_pairs < 2 || further.gain_sigmas < -kMinSigmas ||
+      further.truth_after > all->truth_after) {
+    return false;
+  }
+  CalibrationResult merged = *all;
+  const CalibrationVector values = CameraValues(first, further.found);
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    CalibratedParameter& parameter = merged.parameters[k];
+    if (further.parameters[k].status == Status::kDetermined) {
+      parameter.status = Status::kDetermined;
+      parameter.sigma = further.parameters[k].sigma;
+    }
+    if (parameter.status == Status::kDetermined) parameter.found = values[k];
+  }
+  merged.camera = merged.found = further.found;
+  merged.reason = ImplausibilityReason(first, merged);
+  if (!merged.reason.empty()) return false;
+  merged.noise = further.noise;
+  merged.UseNoise();
+  merged.halves = further.halves;
+  merged.halves_spread = further.halves_spread;
+  merged.pixel_after = further.pixel_after;
+  merged.depth_after = further.depth_after;
+  merged.truth_after = further.truth_after;
+  *all = merged;
+  return true;
+}
+
+// Returns the range of frames (first-last:step) that reduces the frame rate to
+// `max_rate`, or an empty string if no frame has to be left out.
+std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
+  if (timestamps.size() < 2 || max_rate == 0.0) return "";
+  std::vector<double> intervals;
+  for (size_t i = 1; i < timestamps.size(); ++i) {
+    intervals.push_back(timestamps[i] - timestamps[i - 1]);
+  }
+  // Tolerates slightly uneven timestamps.
+  constexpr double kSlack = 0.1;
+  const int step = static_cast<int>(
+      std::min(1e9, std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack)));
+  if (step < 2) return "";
+  return "0-" + std::to_string(timestamps.size() - 1) + ":" +
+         std::to_string(step);
+}
+
+}  // namespace
+
+OdometrySettings CalibrationOdometry() {
+  OdometrySettings settings;
+  settings.odometry.max_flow_px = 30.0;
+  settings.odometry.max_time_shift = 1.0;  // m: depth is always aligned
+  settings.features.max_features = 300;
+  return settings;
+}
+
+SlamSettings CalibrationSlam() {
+  SlamSettings settings;
+  settings.mapping.redundant_share = 2.0;  // never reached
+  settings.mapping.max_pairs = 4;
+  settings.mapping.max_loop_candidates = 0;
+  return settings;
+}
+
+Trajectory SmoothPath(const std::vector<SlamFrame>& frames) {
+  Trajectory path;
+  for (const SlamFrame& frame : frames) {
+    if (frame.tracked.status == TrackingStatus::kLost) continue;
+    path.push_back({frame.tracked.timestamp, frame.odom_from_cam});
+  }
+  return path;
+}
+
+RecordingCalibration CalibrateRecording(
+    const SequenceSettings& sequence, const OdometrySettings& odometry,
+    const SlamSettings& slam, const CalibrationSettings& settings, int threads,
+    const std::function<void(int pass, int done, int all)>& on_frame) {
+  RequireSound(settings.Check(), "calibration: ");
+  RecordingCalibration all;
+  RgbdCamera first;
+  SequenceSettings part = sequence;
+  OdometrySettings with_shutter = odometry;
+  with_shutter.odometry.shutter = ShutterUse::kCamera;
+  with_shutter.odometry.max_time_shift = 1.0;  // see CalibrationOdometry
+  // The same for all cameras and passes: scatter is measured relative to it.
+  DepthNoiseModel& noise = with_shutter.features.depth.noise;
+  if (noise.name == "camera") {
+    noise = *FindNamed(DepthNoiseModels(), "khoshelham");
+  }
+  if (part.frames.empty()) {
+    part.frames =
+        Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
+  }
+  std::optional<RgbdCamera> known;
+  if (odometry.odometry.shutter == ShutterUse::kNone) {
+    // The shutter is to be estimated from zero.
+    known = OpenSequence(sequence).source->camera();
+    known->color_shutter = known->depth_shutter = Shutter();
+  }
+  for (int pass = 1;; ++pass) {
+    if (pass > 1) known = all.result.camera;
+    Sequence opened = OpenSequence(part, /*keep_color=*/false,
+                                   known.has_value() ? &*known : nullptr);
+    const int frames = static_cast<int>(opened.source->timestamps().size());
+    const RgbdCamera camera = opened.source->camera();
+    SequenceRun run(with_shutter, slam, camera, opened.inputs);
+    int done = 0;
+    all.stopped = TrackAll(opened.source.get(), threads, {&run},
+                           [&](const Frame& /*frame*/) {
+                             if (on_frame) on_frame(pass, ++done, frames);
+                             return true;
+                           });
+    all.damaged = static_cast<int>(run.damaged().size());
+    all.left_out = opened.remarks;
+    for (const auto& line : DroppedFrames(*opened.source, run.damaged())) {
+      all.left_out.push_back(line);
+    }
+    const Trajectory* const truth = opened.GroundTruth();
+    run.Finish(truth);
+    const CalibrationResult result = Calibrate(
+        run.slam()->Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
+        settings, {truth, opened.inputs.motion_guess.get()}, threads,
+        pass > 1 ? &first : nullptr);
+    all.path = run.slam()->Path();
+    if (pass == 1) {
+      first = camera;
+      all.result = result;
+    }
+    const bool goes_on = pass == 1
+                             ? result.is_accepted
+                             : TakeUp(first, settings, result, &all.result);
+    // A live camera cannot be read again.
+    if (!goes_on || frames == 0 || pass >= settings.max_passes ||
+        !IsAnotherPassDue(result)) {
+      return all;
+    }
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,288 @@
+#include "frontend/calibration/calibration_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/evaluation/trajectory.h"
+#include "core/geometry/motion.h"
+#include "core/util/format.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Whether every pixel of the image border has a ray. Coefficients that fit
+// where the features are may make the lens model fold over towards the corners.
+bool HasRaysAllAround(const Camera& camera) {
+  const auto has_ray = [&](double u, double v) {
+    return camera.Undistort({u, v}).allFinite();
+  };
+  for (int u = 0; u < camera.width; ++u) {
+    if (!has_ray(u, 0.0) || !has_ray(u, camera.height - 1.0)) return false;
+  }
+  for (int v = 0; v < camera.height; ++v) {
+    if (!has_ray(0.0, v) || !has_ray(camera.width - 1.0, v)) return false;
+  }
+  return true;
+}
+
+// Returns the robust cost of a view of the i-th landmark and its error (px).
+double CostOf(const CalibrationViews& views, const LandmarkView& view,
+              bool with_depth, const CalibrationState& state,
+              const std::vector<MotionDerivatives>& poses, size_t i,
+              const CalibrationState& scales, Eigen::Vector2d* error) {
+  const Landmark& landmark = views.landmarks[i];
+  const double d = state.inverse_depths[i];
+  const LandmarkData data = DataOf(views, landmark, view, scales);
+  const MotionDerivatives& anchor = poses[landmark.anchor];
+  const MotionDerivatives& there = poses[view.keyframe];
+  const double square = kLandmarkLossWidth * kLandmarkLossWidth;
+  LandmarkPixel::Residual<double>(anchor, there, d, state.theta.data(), data,
+                                  error->data());
+  double cost = square * std::log1p(error->squaredNorm() / square);
+  *error /= data.inverse_sigma_px;
+  if (with_depth) {
+    double r;
+    LandmarkDepth::Residual<double>(anchor, there, d, state.theta.data(), data,
+                                    &r);
+    cost += square * std::log1p(r * r / square);
+  }
+  return 0.5 * cost;
+}
+
+// The motion (px/s) in the image of the i-th landmark in a view.
+Eigen::Vector2d FlowOf(const CalibrationViews& views, const LandmarkView& view,
+                       const CalibrationState& state,
+                       const std::vector<MotionDerivatives>& poses, size_t i) {
+  const Landmark& landmark = views.landmarks[i];
+  const double d = state.inverse_depths[i];
+  const double* const theta = state.theta.data();
+  const Eigen::Vector3d X =
+      InView<double>(poses[landmark.anchor], poses[view.keyframe], d, theta,
+                     DataOf(views, landmark, view, state)) /
+      d;
+  Eigen::Vector3d v;
+  views.twists[view.keyframe].PointVelocity(X.data(), v.data());
+  return {theta[kFx] * (v.x() - X.x() / X.z() * v.z()) / X.z(),
+          theta[kFy] * (v.y() - X.y() / X.z() * v.z()) / X.z()};
+}
+
+// The parameter whose halves differ most; null if the halves were not compared.
+const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
+  const auto worst = std::max_element(
+      result.halves.begin(), result.halves.end(),
+      [](const HalvesOfParameter& a, const HalvesOfParameter& b) {
+        return a.Sigmas() < b.Sigmas();
+      });
+  return worst == result.halves.end() ? nullptr : &*worst;
+}
+
+}  // namespace
+
+void CompareHeldOut(const CalibrationViews& views_before,
+                    const CalibrationState& before,
+                    const CalibrationViews& views_after,
+                    const CalibrationState& after, CalibrationResult* result) {
+  struct OfPair {
+    double before = 0.0, after = 0.0;
+    int count = 0;
+  };
+  std::map<std::pair<int, int>, OfPair> pairs;
+  const auto poses_before = PosesOf(before), poses_after = PosesOf(after);
+  result->residuals.clear();
+  for (size_t i = 0; i < views_before.landmarks.size(); ++i) {
+    const Landmark& landmark = views_before.landmarks[i];
+    const auto begin = views_before.views.begin() + landmark.first_view;
+    const auto end = begin + landmark.num_views;
+    const bool has_trained = std::any_of(
+        begin, end, [](const LandmarkView& view) { return !view.is_held_out; });
+    // Other landmarks are placed only by their own depth.
+    if (!has_trained) continue;
+    for (auto view = begin; view != end; ++view) {
+      if (!view->is_held_out) continue;
+      const LandmarkView& view_after =
+          views_after.views[view - views_before.views.begin()];
+      const bool with_depth = view->depth.inverse_sigma > 0.0 &&
+                              view_after.depth.inverse_sigma > 0.0;
+      OfPair& pair = pairs[std::minmax(landmark.anchor, view->keyframe)];
+      HeldOutResidual residual = {view->u, view->v, {}, {}, {}};
+      residual.flow = FlowOf(views_after, view_after, after, poses_after, i);
+      pair.before += CostOf(views_before, *view, with_depth, before,
+                            poses_before, i, after, &residual.before);
+      pair.after += CostOf(views_after, view_after, with_depth, after,
+                           poses_after, i, after, &residual.after);
+      ++pair.count;
+      result->residuals.push_back(residual);
+    }
+  }
+  double sum = 0.0, squares = 0.0;
+  OfPair all;
+  for (const auto& [keyframes, pair] : pairs) {
+    const double gain = (pair.before - pair.after) / pair.count;
+    sum += gain;
+    squares += gain * gain;
+    all.before += pair.before;
+    all.after += pair.after;
+    all.count += pair.count;
+  }
+  const int n = static_cast<int>(pairs.size());
+  result->held_out_pairs = n;
+  if (n < 2) return;
+  result->cost_before = all.before / all.count;
+  result->cost_after = all.after / all.count;
+  const double mean = sum / n;
+  const double variance = (squares - n * mean * mean) / (n - 1);
+  result->gain_sigmas = variance > 0.0 ? mean / std::sqrt(variance / n) : 0.0;
+}
+
+double TruthError(const CalibrationData& data, const CalibrationState& state,
+                  const Trajectory& truth) {
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& [a, b] : data.pairs) {
+    const auto b_from_a =
+        MotionAlong(truth, data.timestamps[a], data.timestamps[b]);
+    if (!b_from_a.has_value()) continue;
+    const Rigid3d found =
+        state.world_from_cam[b].Inverse() * state.world_from_cam[a];
+    sum += (b_from_a->Inverse() * found).translation.squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+bool IsAnotherPassDue(const CalibrationResult& result) {
+  return result.displacement_px > 1.0;
+}
+
+std::string WhatIsLeft(const CalibrationResult& result) {
+  constexpr double kOfFeatures = 0.3;  // px, with rendered recordings
+  const double px = 0.5 * result.pixel_after;
+  return Format("residuals spread by %.3g px, %s the %.3g px of feature noise",
+                px, px > 1.5 * kOfFeatures ? "more than" : "consistent with",
+                kOfFeatures);
+}
+
+std::string WhyHalvesDisagree(const CalibrationSettings& settings,
+                              const CalibrationResult& result) {
+  const HalvesOfParameter* worst = WorstOfHalves(result);
+  if (worst == nullptr || !(worst->Sigmas() > settings.max_halves_sigmas)) {
+    return "";
+  }
+  const CalibrationParameter& row = kCalibrationParameters[worst->part];
+  return Format(
+      "the halves of the recording disagree: %s differs by %.3g%s%s (%.3g "
+      "standard deviations), so there is an error that no parameter describes "
+      "(%s)",
+      row.name, std::abs(worst->second - worst->first),
+      row.unit[0] == '\0' ? "" : " ", row.unit, worst->Sigmas(),
+      WhatIsLeft(result).c_str());
+}
+
+std::string HalvesInWords(const CalibrationResult& result) {
+  const HalvesOfParameter* worst = WorstOfHalves(result);
+  if (worst == nullptr) {
+    return "the halves of the recording have too little data to be compared";
+  }
+  std::string text = Format(
+      "the halves of the recording, calibrated separately, differ by at most "
+      "%.3g standard deviations",
+      worst->Sigmas());
+  if (result.halves_spread > 1.0) {
+    text += Format(" after error bars were widened by a factor of %.3g",
+                   result.halves_spread);
+  }
+  return text;
+}
+
+std::string ImplausibilityReason(const RgbdCamera& first,
+                                 const CalibrationResult& result) {
+  constexpr double kMaxAspect = 0.01;    // difference of fx and fy, as a share
+  constexpr double kMaxOffCentre = 0.1;  // principal point, share of the size
+  constexpr double kMaxPriorSigmas = 4.0;  // of any parameter
+  const auto implausible = [](const std::string& why) {
+    return "the camera found is not plausible: " + why;
+  };
+  const Camera& camera = result.found.camera;
+  const double aspect = camera.fx / camera.fy;
+  const double aspect_before = first.camera.fx / first.camera.fy;
+  if (std::abs(aspect - 1.0) > kMaxAspect &&
+      std::abs(aspect / aspect_before - 1.0) > kMaxAspect) {
+    return implausible(
+        Format("fx and fy differ by %.3g %%", 100.0 * std::abs(aspect - 1.0)));
+  }
+  if (std::abs(camera.cx - 0.5 * (camera.width - 1)) >
+          kMaxOffCentre * camera.width ||
+      std::abs(camera.cy - 0.5 * (camera.height - 1)) >
+          kMaxOffCentre * camera.height) {
+    return implausible(Format(
+        "its principal point (%.3g, %.3g) is too far from the image centre",
+        camera.cx, camera.cy));
+  }
+  if (HasRaysAllAround(first.camera) && !HasRaysAllAround(camera)) {
+    return implausible(
+        "its distortion is not invertible at the image border; record objects "
+        "there, too");
+  }
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    const CalibratedParameter& parameter = result.parameters[k];
+    if (parameter.status != CalibratedParameter::Status::kDetermined) continue;
+    const double moved =
+        std::abs(parameter.found - parameter.before) / parameter.prior;
+    if (moved > kMaxPriorSigmas) {
+      return implausible(
+          Format("%s changes by %.3g standard deviations of its prior",
+                 kCalibrationParameters[k].name, moved));
+    }
+  }
+  return "";
+}
+
+std::string RejectionReason(const RgbdCamera& first,
+                            const CalibrationSettings& settings,
+                            const CalibrationResult& result) {
+  if (result.held_out_pairs < 2) {
+    return "there are too few held-out pairs to evaluate the new camera";
+  }
+  if (result.cost_after > result.cost_of_map) {
+    return Format(
+        "the solution fails: held-out pairs fit worse (cost %.3g) than with "
+        "the poses of the map (%.3g), so some matches are wrong",
+        result.cost_after, result.cost_of_map);
+  }
+  const double gain = 1.0 - result.cost_after / result.cost_before;
+  if (!(gain >= settings.min_gain) || !(result.gain_sigmas >= kMinSigmas)) {
+    return Format(
+        "held-out pairs fit no better with the camera found: their cost %s by "
+        "%.3g %% (%.3g standard deviations)",
+        gain < 0.0 ? "rises" : "falls", 100.0 * std::abs(gain),
+        std::abs(result.gain_sigmas));
+  }
+  if (result.truth_after > result.truth_before) {
+    return Format(
+        "the ground truth contradicts it: motions of pairs are wrong by %.3g "
+        "mm instead of %.3g mm",
+        1e3 * result.truth_after, 1e3 * result.truth_before);
+  }
+  if (!IsAnotherPassDue(result)) {
+    std::string disagree = WhyHalvesDisagree(settings, result);
+    if (!disagree.empty()) return disagree;
+  }
+  const bool has_moved = std::any_of(
+      result.parameters.begin(), result.parameters.end(),
+      [](const CalibratedParameter& p) {
+        return p.status == CalibratedParameter::Status::kDetermined &&
+               std::abs(p.found - p.before) > kMinSigmas * p.sigma;
+      });
+  if (!has_moved) {
+    return Format(
+        "no error found: no determined parameter changes by more than %.3g "
+        "standard deviations",
+        kMinSigmas);
+  }
+  return ImplausibilityReason(first, result);
+}
+
+}  // namespace rgbd_pose

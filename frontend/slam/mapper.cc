@@ -1,0 +1,222 @@
+#include "frontend/slam/mapper.h"
+
+#include "core/util/input_error.h"
+#include "core/util/stage_timer.h"
+#include "frontend/places/relocaliser.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Distance of the pixels used to compare views: 192 pixels of 640 x 480.
+constexpr int kSampleStepPx = 40;
+
+// Maximum flow between a redundant view and the view that replaces it.
+constexpr double kRedundantFlowPx = 30.0;
+
+}  // namespace
+
+std::string MappingOptions::Check() const {
+  if (max_pairs < 1) return "max_pairs must be at least 1";
+  if (!(min_pair_share > 0.0 && min_pair_share <= 1.0)) {
+    return "min_pair_share must be above 0 and at most 1";
+  }
+  if (max_loop_candidates < 0)
+    return "max_loop_candidates must not be negative";
+  if (!(redundant_share > 0.0)) return "redundant_share must be positive";
+  if (window < 1) return "graph: window must be at least 1";
+  if (!(drift > 0.0)) return "graph: drift must be positive";
+  return "";
+}
+
+Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
+    : options_(options),
+      graph_(options.window, options.drift),
+      tracker_(std::move(tracker)),
+      tracked_(tracker_->images().camera) {
+  RequireSound(options.Check(), "mapping: ");
+}
+
+int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
+                        bool is_held) {
+  const FrontendOptions& images = tracker_->images();
+  const int at = graph_.Add(keyframe.world_from_cam, keyframe.segment, is_held);
+  numbers_[keyframe.id] = at;
+  keyframe.frame = PreparedFrame();
+  if (keyframe.images.gray == nullptr) keyframe.images = StoredImages(frame);
+  if (keyframe.features == nullptr && options_.max_loop_candidates > 0) {
+    keyframe.features =
+        std::make_shared<const PlaceFeatures>(DescribeKeyframe(frame, images));
+  }
+  keyframes_.push_back(
+      {std::move(keyframe), std::nullopt,
+       ViewOverlap(frame, images.camera, kSampleStepPx, images.depth.min_depth,
+                   images.depth.max_depth)});
+  return at;
+}
+
+void Mapper::Index(int at) {
+  if (options_.max_loop_candidates == 0) return;
+  index_.Add(at, keyframes_[at].features->described.descriptors);
+}
+
+void Mapper::Load(const KeyframeMap& map, bool is_held) {
+  RequireSound(map.Check(), "map: ");
+  RequireSound(map.CheckCamera(tracker_->images().camera), "map: ");
+  for (const Keyframe& keyframe : map.keyframes) {
+    Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
+  }
+  for (const MapEdge& edge : map.edges) {
+    RelativePose numbered = edge;
+    numbered.ref = numbers_.at(edge.ref);
+    numbered.cur = numbers_.at(edge.cur);
+    graph_.AddPair(numbered, edge.is_tracked);
+  }
+}
+
+MapUpdate Mapper::Add(Keyframe added,
+                      const std::vector<RelativePose>& tracked) {
+  MapUpdate update;
+  const StageTimer timer(&update.ms);
+  const size_t known_pairs = graph_.pairs().size();
+  std::vector<RelativePose> edges;
+  for (RelativePose edge : tracked) {
+    const auto ref = numbers_.find(edge.ref);
+    if (ref == numbers_.end()) continue;
+    edge.ref = ref->second;
+    edges.push_back(graph_.Reanchor(edge));
+  }
+  if (!edges.empty()) {
+    added.segment = graph_.segment(edges[0].ref);
+    added.world_from_cam =
+        graph_.pose(edges[0].ref) * edges[0].cur_from_ref.Inverse();
+  }
+  const PreparedFrame frame = added.Unpacked();
+  const int newest = AddKeyframe(std::move(added), frame, /*is_held=*/false);
+  for (RelativePose& edge : edges) {
+    edge.cur = newest;
+    if (graph_.segment(edge.ref) != graph_.segment(newest)) {
+      if (!graph_.Join(edge)) continue;
+      ++update.joined;
+    }
+    graph_.AddPair(edge, /*is_tracked=*/true);
+  }
+  PairByPose(newest, frame);
+  update.joined += CloseLoopsByAppearance(newest, frame);
+  if (update.joined > 0) PairByPose(newest, frame);
+  Index(newest);
+  for (size_t i = known_pairs; i < graph_.pairs().size(); ++i) {
+    const KeyframePair& pair = graph_.pairs()[i];
+    update.links.push_back({keyframes_[pair.edge.ref].id,
+                            keyframes_[pair.edge.cur].id, pair.is_loop});
+    update.pairs += !pair.is_tracked;
+    update.loops += pair.is_loop;
+  }
+
+  update.error =
+      update.loops > 0 ? graph_.SolveAll() : graph_.SolveNear(newest);
+  FindReturn(newest, &update);
+  CullKeyframes(newest);
+  PublishMovedPoses(&update);
+  return update;
+}
+
+Keyframe Mapper::WithImages(int at) const {
+  Keyframe keyframe = keyframes_[at];
+  keyframe.frame = keyframe.Unpacked();
+  return keyframe;
+}
+
+std::optional<Keyframe> Mapper::Find(const PreparedFrame& lost) {
+  const Relocaliser relocaliser(tracker_->images());
+  const auto found = relocaliser.FindInMap(
+      lost, index_, [this](int at) -> const PlaceFeatures& {
+        return *keyframes_[at].features;
+      });
+  if (!found.has_value()) return std::nullopt;
+  return WithImages(found->keyframe);
+}
+
+// Finds the keyframe with the nearest view, but none that the odometry has.
+void Mapper::FindReturn(int newest, MapUpdate* update) const {
+  double least = 2.0 * kRedundantFlowPx;
+  int nearest = -1;
+  for (int at = 0; at + options_.window < newest; ++at) {
+    if (graph_.IsRemoved(at) || graph_.segment(at) != graph_.segment(newest)) {
+      continue;
+    }
+    const Overlap overlap =
+        keyframes_[at].samples.SeenFrom(graph_.CurFromRef(at, newest));
+    if (overlap.share < options_.redundant_share || overlap.flow_px >= least) {
+      continue;
+    }
+    least = overlap.flow_px;
+    nearest = at;
+  }
+  if (nearest >= 0) update->returned_to = WithImages(nearest);
+}
+
+// Removes the keyframe that leaves the window if it is redundant.
+void Mapper::CullKeyframes(int newest) {
+  const int at = newest - options_.window;
+  if (at < 0 || graph_.IsRemoved(at) || !graph_.IsRedundant(at)) return;
+  for (const int neighbor : graph_.links().Neighbors(at)) {
+    if (neighbor > at) continue;
+    const Overlap overlap =
+        keyframes_[at].samples.SeenFrom(graph_.CurFromRef(at, neighbor));
+    if (overlap.share < options_.redundant_share ||
+        overlap.flow_px > kRedundantFlowPx) {
+      continue;
+    }
+    graph_.Remove(at, neighbor);
+    index_.Remove(at);
+    references_.remove_if([=](const auto& r) { return r.first == at; });
+    MappedKeyframe gone;
+    gone.id = keyframes_[at].id;
+    gone.published = keyframes_[at].published;
+    keyframes_[at] = std::move(gone);
+    return;
+  }
+}
+
+MapUpdate Mapper::Finish() {
+  MapUpdate update;
+  const StageTimer timer(&update.ms);
+  if (graph_.size() > 0) update.error = graph_.SolveAll();
+  PublishMovedPoses(&update);
+  return update;
+}
+
+void Mapper::PublishMovedPoses(MapUpdate* update) {
+  for (int at = 0; at < graph_.size(); ++at) {
+    MappedKeyframe& keyframe = keyframes_[at];
+    const KeyframePlace place = {graph_.pose(at), graph_.segment(at)};
+    if (keyframe.published.has_value() &&
+        keyframe.published->segment == place.segment &&
+        keyframe.published->map_from_cam == place.map_from_cam) {
+      continue;
+    }
+    keyframe.published = place;
+    update->moved[keyframe.id] = place;
+  }
+}
+
+KeyframeMap Mapper::Map(bool as_solved) const {
+  KeyframeMap map;
+  map.camera = tracker_->images().camera;
+  for (int at = 0; at < graph_.size(); ++at) {
+    if (graph_.IsRemoved(at)) continue;
+    map.keyframes.push_back(keyframes_[at]);
+    map.keyframes.back().segment = graph_.segment(at);
+    map.keyframes.back().world_from_cam = graph_.pose(at);
+  }
+  for (const KeyframePair& pair : graph_.pairs()) {
+    MapEdge edge = {pair.edge, pair.is_tracked};
+    edge.ref = keyframes_[pair.edge.ref].id;
+    edge.cur = keyframes_[pair.edge.cur].id;
+    if (as_solved) edge.covariance = graph_.CovarianceAsSolved(pair);
+    map.edges.push_back(edge);
+  }
+  return map;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,115 @@
+#include "frontend/settings/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "tests/support/expect_input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+const Setting& Row(const std::vector<Setting>& table, const std::string& name) {
+  for (const Setting& row : table) {
+    if (row.name == name) return row;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(SettingTableTest, EveryRowHasANameOfItsOwn) {
+  OdometrySettings settings;
+  std::set<std::string> names;
+  for (const Setting& row : SettingTable(&settings)) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_STRNE(row.help, "") << row.name;
+  }
+}
+
+TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
+  OdometrySettings settings;
+  std::set<const void*> places;
+  for (const Setting& row : SettingTable(&settings)) {
+    if (int* const* whole = std::get_if<int*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*whole).second) << row.name;
+    } else if (double* const* real = std::get_if<double*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*real).second) << row.name;
+    } else if (bool* const* yes = std::get_if<bool*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*yes).second) << row.name;
+    } else if (std::string* const* text =
+                   std::get_if<std::string*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*text).second) << row.name;
+    }
+  }
+}
+
+TEST(SettingTableTest, EveryChoiceIsTakenAndToldAgain) {
+  OdometrySettings settings;
+  for (const Setting& row : SettingTable(&settings)) {
+    // A text takes anything, and says what is valid.
+    if (std::holds_alternative<std::string*>(row.value)) {
+      EXPECT_FALSE(row.choices.empty()) << row.name;
+      continue;
+    }
+    const NamedSetting* named = std::get_if<NamedSetting>(&row.value);
+    ASSERT_EQ(named == nullptr, row.choices.empty()) << row.name;
+    for (const std::string& choice : row.choices) {
+      named->set(choice);
+      EXPECT_EQ(named->get(), choice) << row.name;
+    }
+  }
+}
+
+TEST(SettingTableTest, NamesReachTheOptions) {
+  OdometrySettings settings;
+  const std::vector<Setting> table = SettingTable(&settings);
+  const auto set = [&table](const char* name, const char* value) {
+    std::get<NamedSetting>(Row(table, name).value).set(value);
+  };
+  set("robust_schedule", "direct");
+  set("assembly", "per_match");
+  set("initial_guess", "velocity");
+  set("on_lost", "hold");
+  EXPECT_EQ(settings.estimator.options.schedule, RobustSchedule::kDirect);
+  EXPECT_EQ(settings.estimator.options.assembly, Assembly::kPerMatch);
+  EXPECT_TRUE(settings.odometry.predict_velocity);
+  EXPECT_EQ(settings.odometry.on_lost, LostPolicy::kHold);
+  set("initial_guess", "ransac");
+  EXPECT_FALSE(settings.odometry.predict_velocity);
+  ExpectInputError([&] { set("scale", "iqr"); }, {"scale", "'iqr'", "mad"});
+}
+
+TEST(NoiseForTest, IsThatOfTheCameraUnlessOneIsChosen) {
+  OdometrySettings settings;
+  const RgbdCamera kinect = *CameraPreset("tum_fr1");
+  EXPECT_EQ(NoiseFor(settings, kinect).name, "kinect");
+  EXPECT_EQ(NoiseFor(settings, {}).sigma(2.0),
+            FindNamed(DepthNoiseModels(), "khoshelham")->sigma(2.0));
+  EXPECT_EQ(MakeTracker(settings, kinect)->images().depth.noise.name, "kinect");
+  settings.features.depth.noise = *FindNamed(DepthNoiseModels(), "nguyen");
+  EXPECT_EQ(NoiseFor(settings, kinect).name, "nguyen");
+}
+
+TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
+  const auto refused = [](const char* name, double value) {
+    OdometrySettings settings;
+    const std::vector<Setting> table = SettingTable(&settings);
+    const Setting row = Row(table, name);
+    if (int* const* whole = std::get_if<int*>(&row.value)) {
+      **whole = static_cast<int>(value);
+    } else {
+      *std::get<double*>(row.value) = value;
+    }
+    ExpectInputError([&] { MakeOdometry(settings, {}); }, {name});
+  };
+  refused("gnc_factor", 1.0);
+  refused("max_iterations", 0.0);
+  refused("max_features", 2.0);
+  refused("feature_noise", 0.0);
+  refused("min_inliers", 2.0);
+  refused("max_flow_px", 0.0);
+  refused("new_segment_after", -1.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

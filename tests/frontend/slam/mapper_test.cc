@@ -1,0 +1,63 @@
+#include "frontend/slam/mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "frontend/settings/settings.h"
+#include "tests/support/map_parts.h"
+
+namespace rgbd_pose {
+namespace {
+
+Keyframe Noise(int id) {
+  Keyframe keyframe;
+  keyframe.id = id;
+  keyframe.segment = id;
+  keyframe.frame = PreparedFrame(NoiseFrame(id));
+  keyframe.world_from_cam.translation.x() = id;
+  return keyframe;
+}
+
+// With the thousands of keyframes of an hour, updates contain only moved ones.
+TEST(MapperTest, TellsOfEachKeyframeOnce) {
+  const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
+  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), {camera}));
+  for (const int id : {3, 7}) {
+    const MapUpdate update = mapper.Add(Noise(id), {});
+    ASSERT_EQ(update.moved.size(), 1u);
+    EXPECT_EQ(update.moved.begin()->first, id);
+    EXPECT_EQ(update.moved.at(id).map_from_cam.translation.x(), id);
+    EXPECT_EQ(update.moved.at(id).segment, id);
+  }
+  EXPECT_TRUE(mapper.Finish().moved.empty());
+}
+
+// Tracked against two segments: a loaded map and the segment before.
+TEST(MapperTest, TrackedEdgesJoinSegments) {
+  const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
+  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), {camera}));
+  mapper.Add(Noise(3), {});
+  mapper.Add(Noise(7), {});
+  std::vector<RelativePose> edges;
+  RelativePose edge;
+  edge.cur = 9;
+  edge.covariance = 1e-6 * MotionMatrix::Identity();
+  for (const int ref : {3, 7}) {
+    edge.ref = ref;
+    edge.cur_from_ref.translation.z() = ref;
+    edges.push_back(edge);
+  }
+  EXPECT_EQ(mapper.Add(Noise(9), edges).joined, 1);
+  const KeyframeMap map = mapper.Map();
+  for (const MapEdge& measured : map.edges) EXPECT_TRUE(measured.is_tracked);
+  for (const Keyframe& keyframe : map.keyframes) {
+    EXPECT_EQ(keyframe.segment, 7);
+    EXPECT_NEAR(keyframe.world_from_cam.translation.x(), 7.0, 1e-9);
+  }
+  EXPECT_NEAR(map.keyframes[2].world_from_cam.translation.z(), -7.0, 1e-9);
+  EXPECT_NEAR(map.keyframes[0].world_from_cam.translation.z(), -4.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,351 @@
+// Runs SLAM on rendered images and compares map and path with the truth.
+
+#include "frontend/slam/slam.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <future>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/util/input_error.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "tests/support/motion_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kFrames = 60;
+
+// Half the usual width and height, which takes a quarter of the time.
+RgbdCamera SmallCamera() {
+  RgbdCamera camera;
+  camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
+  return camera;
+}
+
+// A sequence that is rendered once.
+struct WalkSequence {
+  WalkSequence() {
+    SyntheticOptions options;
+    options.path = "handheld";
+    options.frames = kFrames;
+    options.camera = SmallCamera();
+    const SyntheticDataset dataset(options);
+    for (int i = 0; i < kFrames; ++i) {
+      frames.push_back(dataset.Read(i));
+      truth.push_back(dataset.WorldFromCam(i));
+    }
+    black = frames[0];
+    black.gray = cv::Mat(black.gray.size(), CV_8UC1, cv::Scalar(0));
+    black.depth = cv::Mat(black.depth.size(), CV_16UC1, cv::Scalar(0));
+  }
+
+  std::vector<Frame> frames;
+  std::vector<Rigid3d> truth;
+  Frame black;
+};
+
+const WalkSequence& Walk() {
+  static const WalkSequence sequence;
+  return sequence;
+}
+
+// Plays frames of the walk at 30 Hz; index -1 is a black frame.
+class Player {
+ public:
+  explicit Player(const SlamSettings& settings = {})
+      : slam(OdometrySettings(), settings, SmallCamera()) {}
+
+  void Play(const std::vector<int>& order) {
+    for (const int i : order) {
+      Frame frame = i < 0 ? Walk().black : Walk().frames[i];
+      frame.timestamp = 1000.0 + (count++) / 30.0;
+      frames.push_back(slam.Track(frame));
+      shown.push_back(i);
+    }
+  }
+
+  // Translation error (m) of the k-th frame played, in a map whose world is the
+  // camera of frame `origin`.
+  double Error(int k, int origin = 0) const {
+    const Rigid3d expected =
+        Walk().truth[origin].Inverse() * Walk().truth[shown[k]];
+    return ErrorOf(frames[k].map_from_cam(), expected).translation;
+  }
+
+  Slam slam;
+  std::vector<SlamFrame> frames;
+  std::vector<int> shown;
+  int count = 0;
+};
+
+std::vector<int> Range(int begin, int end) {
+  std::vector<int> range;
+  const int step = begin < end ? 1 : -1;
+  for (int i = begin; i != end; i += step) range.push_back(i);
+  return range;
+}
+
+// The map is solved in another thread, yet the result is deterministic.
+TEST(SlamTest, GivesTheSameBytesTwice) {
+  Trajectory paths[2];
+  for (Trajectory& path : paths) {
+    Player player;
+    player.Play(Range(0, kFrames));
+    player.slam.Finish();
+    path = player.slam.Path();
+  }
+  ASSERT_EQ(paths[0].size(), static_cast<size_t>(kFrames));
+  EXPECT_EQ(FormatTrajectory(paths[0]), FormatTrajectory(paths[1]));
+}
+
+// Poses of keyframes are stored twice: in the pose graph and in the SLAM state.
+TEST(SlamTest, KnowsWhereTheMapHasItsKeyframes) {
+  Player player;
+  player.Play(Range(0, kFrames));
+  player.Play(Range(kFrames - 1, -1));
+  player.slam.Finish();
+  const Trajectory path = player.slam.Path();
+  int keyframes = 0;
+  for (const Keyframe& keyframe : player.slam.Map().keyframes) {
+    const Rigid3d& pose = path.at(keyframe.id).world_from_cam;
+    EXPECT_LT((pose.translation - keyframe.world_from_cam.translation).norm(),
+              1e-12)
+        << keyframe.id;
+    ++keyframes;
+  }
+  EXPECT_GT(keyframes, 2);
+}
+
+TEST(SlamTest, MapsTheWalkAndItsOdometryNeverJumps) {
+  Player player;
+  player.Play(Range(0, kFrames));
+  player.Play(Range(kFrames - 1, -1));
+  int pairs = 0;
+  for (size_t k = 1; k < player.frames.size(); ++k) {
+    const SlamFrame& frame = player.frames[k];
+    EXPECT_EQ(frame.tracked.status, TrackingStatus::kOk);
+    EXPECT_EQ(frame.segment, 0);
+    EXPECT_LT(player.Error(k), 0.005) << k;
+    pairs += frame.pairs;
+    const Rigid3d step =
+        player.frames[k - 1].odom_from_cam.Inverse() * frame.odom_from_cam;
+    const Rigid3d expected = Walk().truth[player.shown[k - 1]].Inverse() *
+                             Walk().truth[player.shown[k]];
+    EXPECT_LT(ErrorOf(step, expected).translation, 0.003) << k;
+  }
+  EXPECT_GT(pairs, 1);
+  player.slam.Finish();
+  const Trajectory path = player.slam.Path();
+  ASSERT_EQ(path.size(), player.frames.size());
+  EXPECT_LT(ErrorOf(path.back().world_from_cam, Rigid3d()).translation, 0.002);
+  const KeyframeMap map = player.slam.Map();
+  EXPECT_EQ(map.Check(), "");
+  EXPECT_EQ(player.slam.Covariances().size(), map.keyframes.size());
+}
+
+// The map grows with the area covered, not with time.
+TEST(SlamTest, ToAndFroNeedsNoMoreKeyframes) {
+  Player player;
+  player.Play(Range(0, kFrames));
+  player.slam.Finish();
+  const size_t once = player.slam.Map().keyframes.size();
+  for (int lap = 0; lap < 4; ++lap) {
+    player.Play(Range(kFrames - 1, -1));
+    player.Play(Range(0, kFrames));
+  }
+  player.slam.Finish();
+  EXPECT_GE(once, 3U);
+  EXPECT_LE(player.slam.Map().keyframes.size(), once + 2);
+}
+
+TEST(SlamTest, AKidnappedCameraIsFoundInTheMap) {
+  Player player;
+  player.Play(Range(0, kFrames));
+  player.Play(std::vector<int>(5, -1));
+  const size_t back = player.frames.size();
+  player.Play(std::vector<int>(25, 5));
+  int found = 0;
+  for (size_t k = back; k < player.frames.size(); ++k) {
+    if (player.frames[k].tracked.status != TrackingStatus::kOk ||
+        player.frames[k].segment != 0) {
+      continue;
+    }
+    ++found;
+    EXPECT_LT(player.Error(k), 0.01) << k;
+  }
+  EXPECT_GT(found, 5);
+}
+
+// Two seconds of darkness start a new segment, which is joined to the old one
+// as soon as the two overlap.
+TEST(SlamTest, SegmentsThatMeetAreJoined) {
+  Player player;
+  player.Play(Range(30, kFrames));
+  player.Play(std::vector<int>(60, -1));
+  const size_t back = player.frames.size();
+  player.Play(Range(0, kFrames));
+  int joined = 0;
+  for (const SlamFrame& frame : player.frames) joined += frame.joined;
+  player.slam.Finish();
+  EXPECT_EQ(player.frames.back().segment, 0);
+  EXPECT_LT(player.Error(player.frames.size() - 1, 30), 0.005);
+  // In the end, frames of the new segment are in the world of the old one.
+  const Trajectory path = player.slam.Path();
+  const size_t first = path.size() - (player.frames.size() - back);
+  ASSERT_LT(first, path.size());
+  const Rigid3d expected = Walk().truth[30].Inverse() * Walk().truth[59];
+  EXPECT_LT(ErrorOf(path.back().world_from_cam, expected).translation, 0.005);
+}
+
+TEST(SlamTest, AMapThatIsHeldIsTrackedInAndStaysAsItIs) {
+  Player first;
+  first.Play(Range(0, kFrames));
+  first.slam.Finish();
+  const KeyframeMap map = first.slam.Map();
+
+  Player second;
+  second.slam.Load(map, /*is_held=*/true);
+  second.Play({-1});
+  second.Play(Range(20, kFrames));
+  EXPECT_NE(second.frames[0].segment, 0) << "a lost frame is not in the map";
+  EXPECT_NE(second.frames[1].segment, 0);
+  EXPECT_EQ(second.frames.back().segment, 0);
+  EXPECT_LT(second.Error(second.frames.size() - 1), 0.005);
+  second.slam.Finish();
+  const KeyframeMap after = second.slam.Map();
+  ASSERT_GE(after.keyframes.size(), map.keyframes.size());
+  for (size_t k = 0; k < map.keyframes.size(); ++k) {
+    EXPECT_EQ(after.keyframes[k].id, map.keyframes[k].id);
+    EXPECT_EQ(after.keyframes[k].world_from_cam.translation,
+              map.keyframes[k].world_from_cam.translation);
+  }
+}
+
+TEST(SlamTest, TwoMapsOfOnePlaceBecomeOne) {
+  std::vector<KeyframeMap> maps;
+  for (const auto& range : {Range(0, 45), Range(15, kFrames)}) {
+    Player player;
+    player.Play(range);
+    player.slam.Finish();
+    maps.push_back(player.slam.Map());
+  }
+  Player player;
+  for (const KeyframeMap& map : maps) player.slam.Load(map, false);
+  player.Play(Range(20, 50));
+  player.Play(Range(50, 10));
+  player.slam.Finish();
+  for (const Keyframe& keyframe : player.slam.Map().keyframes) {
+    EXPECT_EQ(keyframe.segment, 0) << keyframe.id;
+  }
+}
+
+TEST(SlamTest, RefusesAMapOfAnotherCamera) {
+  KeyframeMap map;
+  map.camera = Camera();
+  Player player;
+  EXPECT_THROW(player.slam.Load(map, false), InputError);
+}
+
+TEST(SlamTest, RefusesOptionsThatMakeNoSense) {
+  SlamSettings settings;
+  settings.mapping.max_pairs = 0;
+  EXPECT_THROW(Player player(settings), InputError);
+  settings = {};
+  settings.mapping.min_pair_share = std::nan("");
+  EXPECT_THROW(Player player(settings), InputError);
+  settings = {};
+  for (const int delay : {-1, std::numeric_limits<int>::max()}) {
+    settings.update_delay = delay;
+    EXPECT_THROW(Player player(settings), InputError);
+  }
+}
+
+// Frames of a camera with rolling shutters.
+struct RollingWalk {
+  RollingWalk() {
+    SyntheticOptions options;
+    options.path = "handheld";
+    options.frames = 30;
+    options.camera = SmallCamera();
+    options.color_shutter = {-0.0075, 0.028};
+    options.depth_shutter = {-0.018, 0.028};
+    const SyntheticDataset dataset(options);
+    for (int i = 0; i < dataset.size(); ++i) frames.push_back(dataset.Read(i));
+    settings.odometry.max_flow_px = 15.0;  // several keyframes
+  }
+
+  std::vector<Frame> frames;
+  OdometrySettings settings;
+};
+
+// The map stores keyframes as the odometry tracks against them: rectified to
+// one moment with the velocity estimated from the next frame.
+TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
+  const RollingWalk walk;
+  Slam slam(walk.settings, {}, SmallCamera());
+  std::map<int, Frame> rectified;
+  for (const Frame& frame : walk.frames) {
+    const TrackedFrame tracked = slam.Track(frame).tracked;
+    ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
+    for (int id = 0; id < tracked.index; ++id) {
+      const Keyframe* const kept = slam.odometry().FindKeyframe(id);
+      if (kept != nullptr) rectified[id] = kept->frame;
+    }
+  }
+  slam.Finish();
+  int compared = 0;
+  for (const Keyframe& keyframe : slam.Map().keyframes) {
+    if (rectified.count(keyframe.id) == 0) continue;  // the very last frame
+    const Frame& expected = rectified.at(keyframe.id);
+    const Frame stored = keyframe.images.Restore();
+    const Frame& measured = walk.frames[keyframe.id];
+    EXPECT_TRUE(stored.IsOneMoment());
+    EXPECT_EQ(cv::norm(stored.gray, expected.gray, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(stored.depth, expected.depth, cv::NORM_INF), 0.0);
+    EXPECT_GT(cv::norm(stored.gray, measured.gray, cv::NORM_INF), 50.0);
+    EXPECT_GT(cv::norm(stored.depth, measured.depth, cv::NORM_INF), 50.0);
+    ++compared;
+  }
+  EXPECT_GE(compared, 3);
+}
+
+// The result depends neither on threads that prepare frames nor on timing.
+TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
+  const RollingWalk walk;
+  std::string first;
+  for (const int threads : {1, 1, 3}) {
+    Slam slam(walk.settings, {}, SmallCamera());
+    std::vector<PreparedFrame> frames;
+    std::vector<std::future<void>> ahead;
+    for (const Frame& frame : walk.frames) {
+      if (threads == 1) {
+        slam.Track(frame);
+      } else {
+        frames.emplace_back(frame);
+        ahead.push_back(std::async(
+            std::launch::async,
+            [&slam, frame = frames.back()] { slam.Prepare(frame); }));
+      }
+    }
+    for (size_t i = 0; i < frames.size(); ++i) {
+      ahead[i].get();
+      slam.Track(frames[i]);
+    }
+    slam.Finish();
+    std::string text = FormatTrajectory(slam.Path());
+    for (const Keyframe& keyframe : slam.Map().keyframes) {
+      text += std::to_string(cv::sum(keyframe.images.Restore().gray)[0]) + "\n";
+    }
+    if (first.empty()) first = text;
+    EXPECT_EQ(text, first) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose
