@@ -6,6 +6,7 @@
 
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
+#include "apps/shell/stop_signal.h"
 #include "frontend/settings/sequence.h"
 #include "frontend/sources/tum_writer.h"
 
@@ -39,6 +40,8 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
     return truth == nullptr ? Trajectory() : *truth;
   };
   writer.max_damaged = sequence.inputs.max_damaged;
+  const StopSignal signal;
+  writer.stop = [&signal] { return signal.name(); };
   WrittenSequence written;
   {
     ProgressBar bar("converting", static_cast<int>(source.timestamps().size()));

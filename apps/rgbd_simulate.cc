@@ -9,6 +9,7 @@
 
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
+#include "apps/shell/stop_signal.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/settings/settings.h"
 #include "frontend/simulation/synthetic_dataset.h"
@@ -102,7 +103,7 @@ ProgramInfo Info(SimulateSettings* settings) {
           {Table(settings)}};
 }
 
-int Main(const SimulateSettings& settings, const ProgramInfo& /*info*/) {
+int Main(const SimulateSettings& settings, const ProgramInfo& info) {
   RequireFlag("output", settings.output);
   SyntheticOptions options = settings.options;
   options.registration_error = Rigid3d::FromRotationVector(
@@ -113,17 +114,24 @@ int Main(const SimulateSettings& settings, const ProgramInfo& /*info*/) {
   options.camera = RegisteredCamera(setup);
   options.depth_camera = setup.depth_camera;
   SyntheticDataset dataset(options);
+  const StopSignal signal;
+  WrittenSequence written;
   {
     ProgressBar bar("rendering", dataset.size());
     TumWriterOptions writer;
     writer.threads = AvailableCores();
     writer.progress = [&bar](int done) { bar.Update(done); };
-    WriteTumSequence(&dataset, settings.output, writer);
+    writer.stop = [&signal] { return signal.name(); };
+    written = WriteTumSequence(&dataset, settings.output, writer);
   }
   std::printf("%s: %d frames of path %s in scene %s, with ground truth\n",
-              settings.output.c_str(), dataset.size(), options.path.c_str(),
+              settings.output.c_str(), written.frames, options.path.c_str(),
               options.scene.c_str());
-  return kExitOk;
+  if (written.stopped.empty()) return kExitOk;
+  std::fprintf(stderr, "%s: stopped after %d frames (%s); they are in %s\n",
+               info.name.c_str(), written.frames, written.stopped.c_str(),
+               settings.output.c_str());
+  return kExitStopped;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <gflags/gflags.h>
 
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
@@ -11,6 +10,7 @@
 #include "apps/results/calibration_output.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/progress_bar.h"
+#include "apps/shell/stop_signal.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
@@ -31,44 +31,6 @@ namespace {
 
 // A run with a smaller share of tracked frames has failed.
 constexpr double kMinTrackedShare = 0.5;
-
-constexpr int kSignals[] = {SIGINT, SIGTERM};
-
-volatile std::sig_atomic_t came = 0;
-struct sigaction before[2];
-
-// While this object lives and --finish_on_signal is set, SIGINT and SIGTERM ask
-// the program to stop early and to keep its results; a second signal ends it at
-// once. Without the flag, signals end the program as usual. Ignored signals
-// stay ignored. Only one object may exist at a time.
-class StopSignal {
- public:
-  StopSignal() {
-    came = 0;
-    struct sigaction action = {};
-    action.sa_handler = [](int signal) { came = signal; };
-    // A second one ends the program.
-    action.sa_flags = SA_RESETHAND | SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    for (int i = 0; i < 2; ++i) {
-      sigaction(kSignals[i], nullptr, &before[i]);
-      if (FLAGS_finish_on_signal && before[i].sa_handler != SIG_IGN) {
-        sigaction(kSignals[i], &action, nullptr);
-      }
-    }
-  }
-  // Restores the previous signal handlers.
-  ~StopSignal() {
-    for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before[i], nullptr);
-  }
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-
-  // The name of the received signal, or empty.
-  std::string name() const {
-    return came == SIGINT ? "SIGINT" : came == SIGTERM ? "SIGTERM" : "";
-  }
-};
 
 // Writes the calibration files and returns the text that the program prints.
 // Afterwards the flags are those of a run with the camera found.
@@ -141,7 +103,7 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
 
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                         RunOutput* output, LiveView* view) {
-  const StopSignal signal;
+  const StopSignal signal(FLAGS_finish_on_signal);
   const size_t size = source->timestamps().size();
   std::string ended_by;
   ProgressBar bar("tracking", static_cast<int>(size));
@@ -153,7 +115,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
         }
         output->Add(frame, *run);
         bar.Update(static_cast<int>(run->frames().size()));
-        ended_by = view->Add(frame, [] { return came != 0; });
+        ended_by = view->Add(frame, [&] { return !signal.name().empty(); });
         if (!signal.name().empty()) ended_by = signal.name();
         return ended_by.empty();
       });

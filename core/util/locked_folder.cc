@@ -26,7 +26,8 @@ bool IsAt(int file, const fs::path& path) {
 
 }  // namespace
 
-LockedFolder::LockedFolder(fs::path path, const std::string& name)
+LockedFolder::LockedFolder(fs::path path, const std::string& name,
+                           const std::string& precious)
     : path_(std::move(path)) {
   const auto fail = [&name](const std::error_code& error) {
     throw InputError(name + " cannot be created or written (" +
@@ -50,6 +51,12 @@ LockedFolder::LockedFolder(fs::path path, const std::string& name)
                        "for it or choose another folder");
     }
   } while (!IsAt(lock_, path_));
+  if (!precious.empty() && fs::exists(path_ / precious, error)) {
+    close(lock_);
+    throw InputError(name + " " + path_.string() +
+                     " holds what a killed program has written; rename it to "
+                     "keep it, or remove it");
+  }
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     fs::remove_all(entry, error);
   }

@@ -9,9 +9,11 @@ namespace rgbd_pose {
 class LockedFolder {
  public:
   // Creates the folder, or empties what a killed program left of it. `name`
-  // begins the messages. Throws InputError if another program uses the folder
-  // or it cannot be created.
-  LockedFolder(std::filesystem::path path, const std::string& name);
+  // begins the messages. Throws InputError if another program uses the folder,
+  // if it cannot be created, and if it contains the file `precious`, which
+  // marks what must not be lost (empty: nothing does).
+  LockedFolder(std::filesystem::path path, const std::string& name,
+               const std::string& precious = "");
 
   // Removes the folder, unless it has been moved.
   ~LockedFolder();

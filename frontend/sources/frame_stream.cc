@@ -65,6 +65,14 @@ std::optional<StreamedFrame> FrameStream::Next() {
   throw InputError(damaged_.front());
 }
 
+void FrameStream::End() {
+  {
+    const Lock lock(mutex_);
+    size_ = std::min(size_, num_begun_);
+  }
+  changed_.notify_all();
+}
+
 void FrameStream::LeaveOut(const Result& result, const InputError& error) {
   if (result.failed == Result::kSource) {
     if (num_good_ == 0 && damaged_.empty()) throw error;

@@ -49,6 +49,9 @@ class FrameStream {
   // 0). If no frame was read at all, throws the first error.
   std::optional<StreamedFrame> Next();
 
+  // Asks the source for no further frame; those that were begun still come.
+  void End();
+
   // The frames left out so far: which image is damaged, and why.
   const std::vector<std::string>& damaged() const { return damaged_; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
@@ -23,6 +24,8 @@ namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char kList[] = "rgb.txt";
 
 using StampPairs = std::vector<std::pair<double, double>>;  // colour, depth
 
@@ -65,23 +68,24 @@ cv::Mat WithGrayOf(const Frame& frame) {
 }
 
 std::string LineOf(const std::string& kind, double stamp) {
-  return Format("%.6f ", stamp) + ImagePath(kind, stamp);
+  return Format("%.6f ", stamp) + ImagePath(kind, stamp) + "\n";
 }
 
-// Writes the lists of images. If readers would pair them by time in another
-// way, also writes the pairs and returns what readers have to know.
+// Writes the lists of images in order. If readers would pair them by time in
+// another way, also writes the pairs and returns what readers have to know.
 std::string WriteLists(const fs::path& folder, const StampPairs& pairs) {
   std::set<double> color, depth;
   std::string lines;
   for (const auto& [of_color, of_depth] : pairs) {
     color.insert(of_color);
     depth.insert(of_depth);
-    lines += LineOf("rgb", of_color) + " " + LineOf("depth", of_depth) + "\n";
+    lines += Format("%.6f ", of_color) + ImagePath("rgb", of_color) + " " +
+             LineOf("depth", of_depth);
   }
   for (const auto& [kind, stamps] :
        {std::pair("rgb", color), {"depth", depth}}) {
     std::string text = "# timestamp filename\n";
-    for (const double stamp : stamps) text += LineOf(kind, stamp) + "\n";
+    for (const double stamp : stamps) text += LineOf(kind, stamp);
     WriteFileAtomically(folder / (std::string(kind) + ".txt"), text);
   }
   const std::vector<double> first(color.begin(), color.end());
@@ -97,7 +101,16 @@ std::string WriteLists(const fs::path& folder, const StampPairs& pairs) {
          "--associations=FOLDER/associations.txt";
 }
 
-// The images are written by the threads that read them, the lists at the end.
+// Adds a frame to the lists of images: what a killed program leaves can be
+// read.
+void AddToLists(const fs::path& folder, double color,
+                std::optional<double> depth) {
+  std::ofstream(folder / kList, std::ios::app) << LineOf("rgb", color);
+  if (!depth.has_value()) return;
+  std::ofstream(folder / "depth.txt", std::ios::app) << LineOf("depth", *depth);
+}
+
+// The images are written by the threads that read them.
 WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
                          const TumWriterOptions& options) {
   fs::create_directories(folder / "rgb");
@@ -116,16 +129,31 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
   };
   WrittenSequence written;
   StampPairs pairs;
+  RgbdCamera camera = source->camera();
+  camera.depth_correction = {};  // the frames are corrected
+  WriteFileAtomically((folder / "camera.yaml").string(),
+                      FormatCameraFile(camera, ""));
   {
     FrameStream stream(source, write, std::max(1, options.threads),
                        options.max_damaged);
     while (const std::optional<StreamedFrame> next = stream.Next()) {
-      pairs.emplace_back(next->frame.timestamp, DepthStamp(next->frame));
+      const double color = next->frame.timestamp;
+      const double depth = DepthStamp(next->frame);
+      const bool is_new = pairs.empty() || pairs.back().second != depth;
+      pairs.emplace_back(color, depth);
+      AddToLists(folder, color, is_new ? std::optional(depth) : std::nullopt);
       ++written.frames;
       if (options.progress) options.progress(written.frames);
+      if (!options.stop || !written.stopped.empty()) continue;
+      written.stopped = options.stop();
+      if (!written.stopped.empty()) stream.End();
     }
     written.damaged = stream.damaged();
-    written.stopped = stream.stopped();
+    if (written.frames + written.damaged.size() ==
+        source->timestamps().size()) {
+      written.stopped.clear();  // it was asked to stop at its last frame
+    }
+    if (written.stopped.empty()) written.stopped = stream.stopped();
   }
   written.remark = WriteLists(folder, pairs);
   const Trajectory ground_truth =
@@ -134,10 +162,6 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
     WriteFileAtomically((folder / "groundtruth.txt").string(),
                         FormatTrajectory(ground_truth));
   }
-  RgbdCamera camera = source->camera();
-  camera.depth_correction = {};  // the frames are corrected
-  WriteFileAtomically((folder / "camera.yaml").string(),
-                      FormatCameraFile(camera, ""));
   return written;
 }
 
@@ -155,7 +179,8 @@ WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                        "or choose another");
     }
     fs::remove(target);  // fails now and not at the end, such as a mount point
-    const LockedFolder partial(target.string() + ".partial", folder + ":");
+    const LockedFolder partial(target.string() + ".partial", folder + ":",
+                               kList);
     WrittenSequence written = WriteAll(source, partial.path(), options);
     fs::rename(partial.path(), target);
     return written;

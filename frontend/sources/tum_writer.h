@@ -17,6 +17,9 @@ struct TumWriterOptions {
   std::function<Trajectory()> ground_truth;
   // Called with the number of written frames, from one thread; may be empty.
   std::function<void(int done)> progress;
+  // Asked after each frame: why to stop with the frames so far, such as the
+  // name of a signal; an empty text or function: goes on.
+  std::function<std::string()> stop;
   // The share of unreadable frames that may be left out, see FrameStream;
   // nothing: every unreadable frame is an error.
   std::optional<double> max_damaged;
@@ -26,16 +29,18 @@ struct TumWriterOptions {
 struct WrittenSequence {
   int frames = 0;                    // written
   std::vector<std::string> damaged;  // FrameStream::damaged
-  std::string stopped;               // FrameStream::stopped
+  std::string stopped;               // why it ended early; empty: it did not
   std::string remark;                // what readers have to know; may be empty
 };
 
 // Writes all frames of a source in the layout of the TUM RGB-D benchmark (grey
 // if the source keeps no colour), with groundtruth.txt if there is a true path,
 // and camera.yaml in ORB-SLAM2's format. The sequence exists as a whole or not
-// at all: it is written to FOLDER.partial, which is renamed at the end. Throws
-// InputError if `folder` is a file, is not empty or cannot be written, and for
-// an unreadable frame.
+// at all: it is written to FOLDER.partial, which is renamed at the end. There
+// it can be read after each frame, so a camera's recording outlives a killed
+// program, and is not overwritten. Throws InputError if `folder` is a file, is
+// not empty or cannot be written, if FOLDER.partial holds such a recording, and
+// for an unreadable frame.
 WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                                  const TumWriterOptions& options = {});
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/util/input_error.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {
@@ -25,6 +26,17 @@ TEST(LockedFolderTest, BelongsToOneProgramAndIsRemovedInTheEnd) {
     EXPECT_TRUE(fs::exists(path / "file.txt"));
   }
   EXPECT_FALSE(fs::exists(path));
+}
+
+TEST(LockedFolderTest, WithSomethingPreciousIsNotEmptied) {
+  const TempFolder folder;
+  folder.Write("new/list.txt", "recorded by a killed program");
+  ExpectInputError(
+      [&] { LockedFolder(folder / "new", "camera:", "list.txt"); },
+      {"camera: " + folder / "new", "rename it to keep it, or remove it"});
+  EXPECT_TRUE(fs::exists(folder / "new/list.txt"));
+  const LockedFolder other(folder / "new", "camera", "table.txt");
+  EXPECT_FALSE(fs::exists(folder / "new/list.txt"));
 }
 
 TEST(LockedFolderTest, ThatWasMovedLeavesTheNextOneAlone) {

@@ -229,6 +229,42 @@ TEST_F(TumWriterTest, LeavesNothingIfItFails) {
   EXPECT_TRUE(fs::is_empty(folder_.parent_path()));
 }
 
+TEST_F(TumWriterTest, KeepsWhatThereIsWhenItIsStopped) {
+  options_.frames = 60;
+  for (const int threads : {1, 3}) {
+    const std::string folder = folder_.string() + std::to_string(threads);
+    TumWriterOptions writer;
+    writer.threads = threads;
+    writer.stop = [done = 0]() mutable { return ++done < 2 ? "" : "a signal"; };
+    SyntheticDataset source(options_);
+    const WrittenSequence written = WriteTumSequence(&source, folder, writer);
+    EXPECT_EQ(written.stopped, "a signal");
+    EXPECT_GE(written.frames, 2);
+    EXPECT_LT(written.frames, 60);
+    SourceOptions options;
+    options.path = folder;
+    options.camera = options_.camera;
+    // All images that were begun are in the lists.
+    EXPECT_EQ(OpenTum(options)->size(), written.frames);
+    for (const char* kind : {"rgb", "depth"}) {
+      EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(folder) / kind),
+                              fs::directory_iterator()),
+                written.frames);
+    }
+  }
+}
+
+TEST_F(TumWriterTest, IsNotStoppedAtItsLastFrame) {
+  SyntheticDataset dataset(options_);
+  TumWriterOptions writer;
+  writer.threads = 1;
+  writer.stop = [done = 0]() mutable { return ++done < 4 ? "" : "a signal"; };
+  const WrittenSequence written =
+      WriteTumSequence(&dataset, folder_.string(), writer);
+  EXPECT_EQ(written.frames, 4);
+  EXPECT_EQ(written.stopped, "");
+}
+
 TEST_F(TumWriterTest, IsUndisturbedByWhatAnEarlierRunLeft) {
   const fs::path left = folder_.string() + ".partial";
   fs::create_directories(left);

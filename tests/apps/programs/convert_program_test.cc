@@ -1,0 +1,105 @@
+// rgbd_convert that is stopped: what it has recorded is kept.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/run_program.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr int kFrames = 8;
+constexpr int kStopAt = 4;  // the frame that is being read then
+
+// A recording that waits for its depth image `kStopAt` like a camera: a pipe.
+class ConvertProgramTest : public testing::Test {
+ protected:
+  ConvertProgramTest() {
+    folder_.Write("small.yaml",
+                  "Camera.fx: 131\nCamera.fy: 131\nCamera.cx: 79.5\n"
+                  "Camera.cy: 59.5\nCamera.width: 160\nCamera.height: 120\n");
+    const RunResult run =
+        RunCommand(RGBD_SIMULATE " --frames=" + std::to_string(kFrames) +
+                       " --camera=" + folder_ / "small.yaml" +
+                       " --output=" + folder_ / "camera",
+                   folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    fs::path stalled;
+    int index = 0;
+    for (const TextLine& line : ReadTextTable(folder_ / "camera/depth.txt")) {
+      if (index++ == kStopAt) stalled = folder_ / ("camera/" + line.words[1]);
+    }
+    pipe_ = stalled.string();
+    fs::rename(stalled, folder_ / "image.png");
+    EXPECT_EQ(mkfifo(pipe_.c_str(), 0600), 0);
+  }
+
+  // Runs a shell command that sends a signal to process $id when all frames
+  // before the stalled one are written, then lets the camera go on.
+  RunResult ConvertUntil(const std::string& signal) const {
+    std::signal(SIGINT, SIG_DFL);  // a test in the background ignores SIGINT
+    const std::string command =
+        "{ id=$$; out='" + folder_ / "out.partial" +
+        "'; ( until [ \"$(cat $out/rgb.txt | wc -l)\" -ge " +
+        std::to_string(kStopAt) + " ]; do sleep 0.01; done 2>/dev/null; " +
+        signal + "; timeout 20 cp '" + folder_ / "image.png" + "' '" + pipe_ +
+        "' ) >/dev/null 2>&1 & exec " + Convert() + " ; }";
+    return RunCommand(command, folder_);
+  }
+
+  std::string Convert() const {
+    return RGBD_CONVERT " --threads=1 --dataset=" + folder_ / "camera" +
+           " --output=" + folder_ / "out";
+  }
+
+  // What a reader of the recording says, which needs its camera.
+  std::string ReadBack(const std::string& name) const {
+    const RunResult run = RunCommand(
+        RGBD_ODOMETRY " --validate_only --dataset=" + folder_ / name +
+            " --camera=" + folder_ / (name + "/camera.yaml"),
+        folder_);
+    return run.out + run.err;
+  }
+
+  const TempFolder folder_;
+  std::string pipe_;
+};
+
+TEST_F(ConvertProgramTest, ASignalEndsItWithWhatThereIs) {
+  for (const std::string name : {"INT", "TERM"}) {
+    const RunResult run = ConvertUntil("kill -" + name + " $id");
+    EXPECT_EQ(run.exit_code, 6) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("stopped after 5 frames (SIG" + name + ")"));
+    EXPECT_FALSE(fs::exists(folder_ / "out.partial"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/groundtruth.txt"));
+    EXPECT_THAT(ReadBack("out"), HasSubstr("frames      5, all readable"));
+
+    // The next run of the same name leaves it alone.
+    const RunResult next = RunCommand(Convert(), folder_);
+    EXPECT_EQ(next.exit_code, 2);
+    EXPECT_THAT(next.err, HasSubstr("is not an empty folder"));
+    EXPECT_THAT(ReadBack("out"), HasSubstr("frames      5, all readable"));
+    fs::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(ConvertProgramTest, WhatAKilledOneRecordedIsNotOverwritten) {
+  EXPECT_NE(ConvertUntil("kill -KILL $id; exit").exit_code, 6);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  const RunResult next = RunCommand(Convert(), folder_);
+  EXPECT_EQ(next.exit_code, 2);
+  EXPECT_THAT(next.err, HasSubstr("out.partial holds what a killed program"));
+  fs::rename(folder_ / "out.partial", folder_ / "kept");
+  EXPECT_THAT(ReadBack("kept"), HasSubstr("frames      4, all readable"));
+}
+
+}  // namespace
+}  // namespace rgbd_pose
