@@ -111,6 +111,7 @@ int Main(const SimulateSettings& settings, const ProgramInfo& info) {
       {settings.registration_shift, 0.0, 0.0});
   const CameraSetup setup =
       ResolveCameraSetup(settings.camera, settings.depth_camera);
+  Warn({setup.remark});
   options.camera = RegisteredCamera(setup);
   options.depth_camera = setup.depth_camera;
   SyntheticDataset dataset(options);

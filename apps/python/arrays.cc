@@ -146,6 +146,13 @@ std::string PathFrom(const py::object& path) {
   return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
 }
 
+void WarnUser(const std::string& remark) {
+  if (remark.empty()) return;
+  if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 1) != 0) {
+    throw py::error_already_set();  // users may make warnings errors
+  }
+}
+
 Trajectory TrajectoryFrom(const py::object& object, const std::string& name) {
   if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__")) {
     return ReadTrajectory(PathFrom(object));

@@ -111,6 +111,9 @@ auto PropertiesOf(Class* type) {
 
 std::string PathFrom(const pybind11::object& path);
 
+// Tells users a remark, such as on a file, as a UserWarning; an empty one not.
+void WarnUser(const std::string& remark);
+
 // A trajectory from the path of a TUM text file, or from a pair of timestamps
 // (N,) and poses (N, 7) tx ty tz qx qy qz qw or (N, 4, 4). Throws InputError
 // with the name of the argument for anything else.

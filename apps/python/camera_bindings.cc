@@ -66,7 +66,10 @@ RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
 
 RgbdCamera LoadCamera(const py::object& path_or_preset,
                       std::optional<double> depth_scale) {
-  RgbdCamera camera = ResolveCamera(PathFrom(path_or_preset));
+  const CameraSetup setup =
+      ResolveCameraSetup(PathFrom(path_or_preset), "cam0");
+  WarnUser(setup.remark);
+  RgbdCamera camera = RegisteredCamera(setup);
   if (depth_scale.has_value()) camera.depth_scale = *depth_scale;
   return Checked(camera);
 }

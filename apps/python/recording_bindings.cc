@@ -93,6 +93,7 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
   }
   if (is_file) {
     options.camera = ResolveCameraSetup(PathFrom(camera), depth_camera);
+    WarnUser(options.camera->remark);
   } else if (!camera.is_none()) {
     options.camera = camera.cast<RgbdCamera>();
   }

@@ -1,12 +1,11 @@
 #include <gflags/gflags.h>
 
-#include <algorithm>
-#include <numeric>
 #include <set>
 #include <vector>
 
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
+#include "core/util/nearest_name.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -32,33 +31,16 @@ bool FindFlag(const std::string& name, CommandLineFlagInfo* flag) {
          gflags::GetCommandLineFlagInfo(name.c_str(), flag);
 }
 
-// The number of letters to insert, delete or replace.
-int EditDistance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (size_t i = 0; i < a.size(); ++i) {
-    int diagonal = row[0]++;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const int changed = diagonal + (a[i] != b[j]);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
 // Suggests the most similar flag, or what to do if there is none.
 std::string Hint(const std::string& name) {
   std::vector<CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
-  std::string nearest;
-  int least = static_cast<int>(name.size()) / 3 + 1;
+  std::vector<std::string> names;
   for (const CommandLineFlagInfo& flag : flags) {
-    const int distance = EditDistance(name, flag.name);
-    if (IsOfGflags(flag.name) || distance >= least) continue;
-    least = distance;
-    nearest = flag.name;
+    if (!IsOfGflags(flag.name)) names.push_back(flag.name);
   }
+  const std::string nearest =
+      NearestName(name, names, static_cast<int>(name.size()) / 3);
   return nearest.empty() ? "--help lists the flags"
                          : "did you mean --" + nearest + "?";
 }

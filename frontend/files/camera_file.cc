@@ -7,6 +7,7 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/files/camera_keys.h"
 #include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
@@ -199,7 +200,9 @@ CameraSetup ReadCameraFile(const std::string& path,
 
 CameraSetup ReadCameraText(const std::string& text, const std::string& path,
                            const std::string& depth_camera) {
-  const YamlSection file = YamlSection::FromText(text, path);
+  const YamlSection file =
+      YamlSection::FromText(WithSpellingOfKeys(text), path);
+  const std::string remark = CheckCameraKeys(file);
   RgbdCamera camera = {ReadAnyLayout(path, file)};
   const std::optional<double> depth_scale = ReadDepthScale(file);
   camera.depth_correction = ReadDepthCorrection(file);
@@ -207,6 +210,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   camera.depth_noise = ReadDepthNoise(file);
   CameraSetup result(camera);
   result.depth_scale = depth_scale;
+  if (!remark.empty()) result.remark = path + ": " + remark;
   RequireSound(result.camera.Check(), path + ": ");
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +

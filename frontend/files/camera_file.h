@@ -35,6 +35,9 @@ struct CameraSetup {
 
   // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;
+
+  // What users should know about the file, in one line: unknown keys.
+  std::string remark;
 };
 
 // The camera after depth is registered, by default with the depth scale 5000 of
@@ -58,7 +61,8 @@ RgbdCamera RegisteredCamera(const CameraSetup& setup);
 // and errors of depth (see DepthCorrection), inverse_depth_offset (1/m),
 // depth_rotation (rotation vector, rad), depth_translation (m); depth_noise, a
 // list of constant (m), quadratic (1/m), centre (m) and mean_share of a
-// DepthNoiseModel.
+// DepthNoiseModel. Keys that start with colour_ are read as well. A key that is
+// nearly one of these is an error; all others are named in the remark.
 // `depth_camera` is the name of the depth camera in a Kalibr file: cam0 if
 // depth is registered to colour, otherwise a later one. These have T_cn_cnm1,
 // the transform from the camera before. Empty: registered, but an error for a

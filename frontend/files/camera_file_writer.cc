@@ -10,6 +10,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
+#include "frontend/files/camera_keys.h"
 #include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
@@ -229,7 +230,7 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
 std::optional<std::string> Edited(const RgbdCamera& camera,
                                   const std::string& like) {
   ResolveCamera(like);  // throws if the file has errors
-  const std::string text = ReadTextFile(like);
+  const std::string text = WithSpellingOfKeys(ReadTextFile(like));
   const YamlSection file = YamlSection::FromText(text, like);
   const std::string prefix =
       file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";

@@ -1,8 +1,12 @@
 #include "frontend/files/depth_noise_file.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "core/util/nearest_name.h"
 #include "core/util/text_file.h"
 #include "frontend/files/yaml_section.h"
 
@@ -22,6 +26,15 @@ std::string FormatDepthNoiseFile(const DepthNoiseModel& model) {
 
 DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
   const YamlSection file = YamlSection::FromFile(path);
+  const std::vector<std::string> keys = {"constant", "quadratic", "centre",
+                                         "mean_share"};
+  for (const std::string& key : file.Keys()) {
+    if (std::count(keys.begin(), keys.end(), key) > 0) continue;
+    const std::string meant = NearestName(key, keys, 2);
+    file.Fail(key, "is no key of a noise of depth" +
+                       (meant.empty() ? ": " + Join(keys)
+                                      : "; did you mean " + meant + "?"));
+  }
   DepthNoiseModel model;
   model.name = path;
   model.constant = file.Number("constant");

@@ -30,11 +30,17 @@ bool YamlSection::Has(const std::string& key) const {
   return node_[key].IsDefined();
 }
 
+std::vector<std::string> YamlSection::Keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_) keys.push_back(entry.first.Scalar());
+  return keys;
+}
+
 bool YamlSection::HasKeyStartingWith(const std::string& start) const {
-  for (const auto& entry : node_) {
-    if (entry.first.Scalar().rfind(start, 0) == 0) return true;
-  }
-  return false;
+  const std::vector<std::string> keys = Keys();
+  return std::any_of(keys.begin(), keys.end(), [&start](const auto& key) {
+    return key.rfind(start, 0) == 0;
+  });
 }
 
 YamlSection YamlSection::Child(const std::string& key) const {

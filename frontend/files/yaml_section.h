@@ -17,6 +17,8 @@ class YamlSection {
 
   const YAML::Node& node() const { return node_; }
 
+  // All keys, in their order.
+  std::vector<std::string> Keys() const;
   bool Has(const std::string& key) const;
   bool HasKeyStartingWith(const std::string& start) const;
 

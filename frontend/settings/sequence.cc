@@ -144,14 +144,16 @@ std::vector<std::string> DroppedFrames(
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
                       const RgbdCamera* camera) {
   Sequence sequence;
+  const SourceOptions options = OptionsOf(settings, keep_color, camera);
+  if (options.camera.has_value() && !options.camera->remark.empty()) {
+    sequence.remarks.push_back(options.camera->remark);
+  }
   sequence.inputs.max_damaged = settings.max_damaged;
   if (!(settings.max_damaged >= 0.0)) {
     throw InputError("max_damaged: must not be negative");
   }
   const FrameRange range = ParseFrameRange(settings.frames);
-  sequence.source = PartOf(
-      OpenSource(settings.source, OptionsOf(settings, keep_color, camera)),
-      range);
+  sequence.source = PartOf(OpenSource(settings.source, options), range);
   sequence.compares = settings.groundtruth != "none";
   if (sequence.compares) FindTruth(settings, &sequence);
   if (!settings.motion_guess.empty()) {

@@ -196,11 +196,14 @@ CameraSetup ReadCalibrationText(const std::string& path,
 }
 
 std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
-                                     const TumLists& lists) {
+                                     const TumLists& lists,
+                                     std::string* remark) {
   if (options.camera.has_value()) return std::nullopt;  // not needed
   const fs::path folder = options.path;
   if (PathExists(folder / "camera.yaml")) {
-    return ReadCameraFile((folder / "camera.yaml").string());
+    CameraSetup setup = ReadCameraFile((folder / "camera.yaml").string());
+    *remark = setup.remark;
+    return setup;
   }
   if (PathExists(folder / "calibration.txt")) {
     return ReadCalibrationText((folder / "calibration.txt").string(),
@@ -214,8 +217,9 @@ class TumDataset final : public Dataset {
   explicit TumDataset(const SourceOptions& options)
       : folder_(options.path),
         lists_(ReadLists(options)),
-        assembly_(ChooseCamera(options, OwnCamera(options, lists_)),
-                  options.keep_color) {}
+        assembly_(
+            ChooseCamera(options, OwnCamera(options, lists_, &camera_remark_)),
+            options.keep_color) {}
 
   int size() const override { return static_cast<int>(lists_.pairs.size()); }
   double timestamp(int index) const override {
@@ -239,6 +243,7 @@ class TumDataset final : public Dataset {
 
   std::vector<std::string> remarks() const override {
     std::vector<std::string> lines = truth_remarks_;
+    if (!camera_remark_.empty()) lines.push_back(camera_remark_);
     if (lists_.same_stamp > 0) {
       lines.push_back(SameStampRemark(folder_, lists_.same_stamp));
     }
@@ -248,6 +253,7 @@ class TumDataset final : public Dataset {
  private:
   std::string folder_;
   TumLists lists_;
+  std::string camera_remark_;
   mutable std::vector<std::string> truth_remarks_;
   FrameAssembly assembly_;
 };

@@ -80,6 +80,18 @@ def test_loads_presets_and_files(tmp_path):
         assert (camera.depth_time_offset, camera.depth_readout) == (-0.01, 0)
 
 
+def test_keys_of_a_file_that_are_not_read_are_told(tmp_path):
+    path = tmp_path / "camera.yaml"
+    text = "Camera.fx: 262\nCamera.fy: 263\nCamera.cx: 160\nCamera.cy: 120\n"
+    text += "Camera.width: 320\nCamera.height: 240\n"
+    path.write_text(text + "Camera.id: 3\ncolour_readout: 0.02\n")
+    with pytest.warns(UserWarning, match="not read: Camera.id$"):
+        assert rgbd_pose.Camera.load(path).color_readout == 0.02
+    path.write_text(text + "DepthMapfactor: 1000\n")
+    with pytest.raises(rgbd_pose.InputError, match="mean DepthMapFactor"):
+        rgbd_pose.Camera.load(path)
+
+
 @pytest.mark.parametrize(
     "make, words",
     [

@@ -53,6 +53,10 @@ TEST(DepthNoiseFileTest, SaysWhatIsWrongWithAFile) {
         Wrong{"constant: 0.001\nquadratic: 0\nmean_share: 2\n", "mean_share"},
         Wrong{"constant: 0\nquadratic: 0\n", "above 0 for all depths"},
         Wrong{"constant: 1.5\nquadratic: 2.5\n", "are the values in metres?"},
+        Wrong{"constant: 0.001\nquadratic: 0.002\ncenter: 0.4\n",
+              "center is no key of a noise of depth; did you mean centre?"},
+        Wrong{"constant: 0.001\nquadratic: 0.002\nlinear: 0.4\n",
+              "linear is no key of a noise of depth: constant, quadratic"},
         Wrong{"constant: [\n", "YAML"}}) {
     const std::string path = folder.Write("noise.yaml", wrong.text);
     ExpectInputError([&] { ReadDepthNoiseFile(path); }, {path, wrong.says});
