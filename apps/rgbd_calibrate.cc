@@ -56,7 +56,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   // Check the input before anything is created.
   OpenSequence(settings.sequence);
-  RequireOtherFolder("output", FLAGS_output, settings.sequence.dataset);
+  RequireOutside("output", FLAGS_output, settings.sequence.dataset);
   RunFolder folder(FLAGS_output);
   const auto start = std::chrono::steady_clock::now();
   const RecordingCalibration calibration =

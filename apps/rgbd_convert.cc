@@ -31,6 +31,7 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.dataset);
   RequireFlag("output", FLAGS_output);
   Sequence sequence = OpenSequence(settings, /*keep_color=*/true);
+  RequireOutside("output", FLAGS_output, settings.dataset);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   TumWriterOptions writer;

@@ -89,8 +89,7 @@ std::optional<RecordingCalibration> Calibrate(const ProgramSettings& settings,
         "--calibrate changes the camera, which --load_map must keep; calibrate "
         "before the map is made");
   }
-  RequireOtherFolder("output", settings.output.output,
-                     settings.sequence.dataset);
+  RequireOutside("output", settings.output.output, settings.sequence.dataset);
   RunOutput(settings.output, *OpenSequence(settings.sequence).source,
             settings.odometry.features.depth);
   RequireMapToSave(settings);

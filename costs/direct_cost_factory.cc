@@ -14,8 +14,8 @@ namespace rgbd_pose {
 std::string DirectOptions::Check() const {
   if (max_points < 0) return "max_points must not be negative";
   if (!(min_gradient >= 0.0)) return "min_gradient must not be negative";
-  if (!(min_depth > 0.0 && min_depth < max_depth)) {
-    return "depth limits must satisfy 0 < min_depth < max_depth";
+  if (!(min_depth > 0.0 && min_depth < max_depth && max_depth <= 1000.0)) {
+    return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
   if (num_levels < 1 || finest_level < 0) {
     return "num_levels must be positive and finest_level not negative";

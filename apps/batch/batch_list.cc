@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "apps/batch/batch_plan.h"
+#include "apps/shell/program.h"
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -76,11 +77,12 @@ std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
                        "needs one or two columns (folder camera), has " +
                        std::to_string(words.size()));
     }
+    const std::string listed = WithHome(words[0]);
+    const std::string camera = words.size() == 2 ? WithHome(words[1]) : "";
     const std::string pattern =
-        fs::path(words[0]).is_absolute() ? words[0] : literal + words[0];
+        fs::path(listed).is_absolute() ? listed : literal + listed;
     const std::vector<std::string> folders = MatchingFolders(pattern);
-    if (folders.empty())
-      throw InputError(place + "no such folder: " + words[0]);
+    if (folders.empty()) throw InputError(place + "no such folder: " + listed);
     for (const std::string& match : folders) {
       // "folder/" has an empty last component.
       const fs::path folder =
@@ -100,8 +102,7 @@ std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
                          "; rename the folder or list a link to it");
       }
       sequences.push_back(
-          {name, folder.string(),
-           CameraOf(folder, words.size() == 2 ? words[1] : "", base, place)});
+          {name, folder.string(), CameraOf(folder, camera, base, place)});
     }
   }
   if (sequences.empty()) throw InputError(path + ": lists no sequences");

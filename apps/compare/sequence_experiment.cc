@@ -156,6 +156,7 @@ ExperimentResult RunRecorded(const ExperimentSettings& settings,
   const std::string name = FolderName(settings.experiment);
   SequenceExperiment experiment(name, settings, output);
   RequireFlag("camera", settings.camera);
+  RequireOutside("output", output, settings.experiment);
   SequenceSettings files;
   files.dataset = settings.experiment;
   files.camera = settings.camera;

@@ -93,6 +93,15 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
   }
 }
 
+void RunOutput::WarnOfMissingImages(size_t frames) const {
+  const int last = drawn_.LastBegin();
+  if (last < static_cast<int>(frames)) return;
+  Warn(
+      {Format("--debug_images: there is no frame %d; the %zu frames are "
+              "numbered from 0",
+              last, frames)});
+}
+
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   depth_stamps_ms_.push_back(1e3 * frame.depth_delay);
   const TrackedFrame& tracked = run.frames().back();

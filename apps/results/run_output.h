@@ -33,6 +33,10 @@ class RunOutput {
   RunOutput(const RunOutputSettings& settings, const FrameSource& source,
             const DepthLookupOptions& depth);
 
+  // Warns if --debug_images names a frame that a recording of so many frames
+  // does not have.
+  void WarnOfMissingImages(size_t frames) const;
+
   // Call after the run has tracked a frame.
   void Add(const Frame& frame, const SequenceRun& run);
 

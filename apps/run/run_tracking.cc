@@ -139,8 +139,11 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
         " needs the frames a second time, but '" + dataset +
         "' is not a file or folder; record it with rgbd_convert first");
   }
+  RequireOutside("output", folder, dataset);
   FrameSource& source = *sequence->source;
   RunOutput output(settings.output, source, settings.odometry.features.depth);
+  const size_t known_frames = source.timestamps().size();
+  if (known_frames > 0) output.WarnOfMissingImages(known_frames);
   LiveView view(dataset, settings.view, source.camera().camera, *run);
   if (view.is_open()) {
     std::fprintf(stderr, "view on     %s\n", view.address().c_str());
@@ -148,6 +151,7 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   const std::string stopped =
       TrackSource(&source, threads, run, &output, &view);
   const double seconds = SecondsSince(start);
+  if (known_frames == 0) output.WarnOfMissingImages(run->frames().size());
 
   const Trajectory* const truth = sequence->GroundTruth();
   const RunResults results = run->Finish(truth);

@@ -86,6 +86,7 @@ void ReadWords(const std::vector<std::string>& words, const std::string& where,
     } else {
       throw InputError(where + "--" + name + " needs a value");
     }
+    value = WithHome(value);
     if (name == "flagfile") {
       ReadFlagFile(value, depth + 1);
     } else if (gflags::SetCommandLineOption(flag.name.c_str(), value.c_str())

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <thread>
 
+#include "apps/shell/stop_signal.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
@@ -155,6 +156,7 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
     // Programs have threads of their own; OpenCV's would compete with them.
     cv::setNumThreads(1);
     settings.Apply();
+    const CleanEnd clean_end;
     const int exit_code = body();
     const bool is_written = std::fflush(stdout) == 0;
     if (!is_written || std::ferror(stdout) != 0) {
@@ -209,6 +211,38 @@ void RequireOtherFolder(const std::string& flag, const std::string& folder,
   if (std::filesystem::equivalent(folder, other, ignored) || folder == other) {
     throw InputError("--" + flag + ": must be another folder than " + other);
   }
+}
+
+std::string WithHome(const std::string& text) {
+  std::string result;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == ',';
+    const char next = i + 1 < text.size() ? text[i + 1] : '/';
+    if (!begins || text[i] != '~' || (next != '/' && next != ',')) {
+      result += text[i];
+      continue;
+    }
+    const char* const home = std::getenv("HOME");
+    if (home == nullptr || *home == '\0') {
+      throw InputError("'" + text + "': there is no home folder (HOME)");
+    }
+    result += home;
+  }
+  return result;
+}
+
+void RequireOutside(const std::string& flag, const std::string& folder,
+                    const std::string& recording) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(recording, error)) return;
+  const auto below = std::filesystem::weakly_canonical(folder, error)
+                         .lexically_relative(std::filesystem::weakly_canonical(
+                             recording, error));
+  if (below.empty() || *below.begin() == "..") return;
+  throw InputError("--" + flag + "=" + folder +
+                   ": is in the recording's own "
+                   "folder " +
+                   recording + "; choose one outside it");
 }
 
 int AvailableCores() {

@@ -76,6 +76,16 @@ void Warn(const std::vector<std::string>& lines);
 // Ends RunProgram with one line on stderr and kExitUsage if the value is empty.
 void RequireFlag(const std::string& name, const std::string& value);
 
+// The text with the user's home folder for each "~" that begins a path, alone
+// or in a list: shells leave it as it is in --flag=~/path. Throws InputError if
+// there is no home folder.
+std::string WithHome(const std::string& text);
+
+// Throws InputError if the folder of a flag is that of a recording or below it:
+// files of a run would be taken for those of the recording.
+void RequireOutside(const std::string& flag, const std::string& folder,
+                    const std::string& recording);
+
 // Throws InputError if the folder of a flag is `other`, whose files would be
 // replaced or mixed with others.
 void RequireOtherFolder(const std::string& flag, const std::string& folder,

@@ -1,34 +1,98 @@
 #include "apps/shell/stop_signal.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
+#include <system_error>
+
+#include "core/util/input_error.h"
+#include "core/util/locked_folder.h"
 
 namespace rgbd_pose {
 namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM};
 
-volatile std::sig_atomic_t came = 0;
-struct sigaction before[2];
-
-}  // namespace
-
-StopSignal::StopSignal(bool is_used) {
-  came = 0;
-  struct sigaction action = {};
-  action.sa_handler = [](int signal) { came = signal; };
-  // A second one ends the program.
-  action.sa_flags = SA_RESETHAND | SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  for (int i = 0; i < 2; ++i) {
-    sigaction(kSignals[i], nullptr, &before[i]);
-    if (is_used && before[i].sa_handler != SIG_IGN) {
+// The signal handlers before an object replaced them.
+class Handlers {
+ public:
+  // Sets a handler for the signals that are not ignored.
+  void Replace(void (*handler)(int)) {
+    for (int i = 0; i < 2; ++i) sigaction(kSignals[i], nullptr, &before_[i]);
+    struct sigaction action = {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (int i = 0; i < 2; ++i) {
+      if (before_[i].sa_handler == SIG_IGN) continue;
       sigaction(kSignals[i], &action, nullptr);
     }
   }
+  void Restore() const {
+    for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before_[i], nullptr);
+  }
+
+ private:
+  struct sigaction before_[2] = {};
+};
+
+// Of CleanEnd.
+int pipe_ends[2];  // signal numbers; 0: the object ends
+Handlers before_clean_end;
+
+// Of StopSignal.
+volatile std::sig_atomic_t came = 0;
+Handlers before_stop;
+
+void SendThroughPipe(char number) {
+  // A full pipe holds a signal already.
+  const ssize_t written = write(pipe_ends[1], &number, 1);
+  static_cast<void>(written);
+}
+
+}  // namespace
+
+CleanEnd::CleanEnd() {
+  if (pipe2(pipe_ends, O_CLOEXEC) != 0) {
+    throw InputError("no pipe can be opened (" +
+                     std::generic_category().message(errno) + ")");
+  }
+  waiting_ = std::thread([] {
+    char number = 0;
+    while (read(pipe_ends[0], &number, 1) < 0 && errno == EINTR) {
+    }
+    if (number == 0) return;
+    LockedFolder::RemoveAll();
+    std::signal(number, SIG_DFL);
+    kill(getpid(), number);
+  });
+  before_clean_end.Replace([](int signal) {
+    const int error = errno;  // of what was interrupted
+    SendThroughPipe(static_cast<char>(signal));
+    errno = error;
+  });
+}
+
+CleanEnd::~CleanEnd() {
+  before_clean_end.Restore();
+  SendThroughPipe(0);
+  waiting_.join();
+  for (const int end : pipe_ends) close(end);
+}
+
+StopSignal::StopSignal(bool is_used) : is_used_(is_used) {
+  came = 0;
+  if (!is_used_) return;
+  before_stop.Replace([](int signal) {
+    came = signal;
+    before_stop.Restore();  // a second one ends the program
+  });
 }
 
 StopSignal::~StopSignal() {
-  for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before[i], nullptr);
+  if (is_used_) before_stop.Restore();
 }
 
 std::string StopSignal::name() const {

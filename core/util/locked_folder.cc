@@ -6,15 +6,21 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::mutex mutex;  // guards `folders`
+std::set<const LockedFolder*> folders;
 
 // Whether `file` is still the folder at `path`.
 bool IsAt(int file, const fs::path& path) {
@@ -28,7 +34,7 @@ bool IsAt(int file, const fs::path& path) {
 
 LockedFolder::LockedFolder(fs::path path, const std::string& name,
                            const std::string& precious)
-    : path_(std::move(path)) {
+    : path_(std::move(path)), precious_(precious) {
   const auto fail = [&name](const std::error_code& error) {
     throw InputError(name + " cannot be created or written (" +
                      error.message() + ")");
@@ -51,7 +57,7 @@ LockedFolder::LockedFolder(fs::path path, const std::string& name,
                        "for it or choose another folder");
     }
   } while (!IsAt(lock_, path_));
-  if (!precious.empty() && fs::exists(path_ / precious, error)) {
+  if (IsPrecious()) {
     close(lock_);
     throw InputError(name + " " + path_.string() +
                      " holds what a killed program has written; rename it to "
@@ -60,12 +66,36 @@ LockedFolder::LockedFolder(fs::path path, const std::string& name,
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     fs::remove_all(entry, error);
   }
+  const std::lock_guard lock(mutex);
+  folders.insert(this);
 }
 
 LockedFolder::~LockedFolder() {
-  std::error_code ignored;
-  if (IsAt(lock_, path_)) fs::remove_all(path_, ignored);
+  {
+    const std::lock_guard lock(mutex);
+    folders.erase(this);
+  }
+  Remove();
   close(lock_);
+}
+
+void LockedFolder::RemoveAll() {
+  const std::lock_guard lock(mutex);
+  for (const LockedFolder* const folder : folders) {
+    if (!folder->IsPrecious()) folder->Remove();
+  }
+}
+
+bool LockedFolder::IsPrecious() const {
+  return !precious_.empty() && PathExists(path_ / precious_);
+}
+
+void LockedFolder::Remove() const {
+  // Other threads may still write files: removed again.
+  std::error_code error;
+  for (int attempt = 0; attempt < 100 && IsAt(lock_, path_); ++attempt) {
+    fs::remove_all(path_, error);
+  }
 }
 
 }  // namespace rgbd_pose

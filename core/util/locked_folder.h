@@ -22,8 +22,18 @@ class LockedFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
+  // Removes the folders of all objects there are, except those with their
+  // precious file: for a program that ends at once. May be called from any
+  // thread.
+  static void RemoveAll();
+
  private:
+  // Whether the folder contains the precious file.
+  bool IsPrecious() const;
+  void Remove() const;
+
   const std::filesystem::path path_;
+  const std::string precious_;
   int lock_ = -1;
 };
 

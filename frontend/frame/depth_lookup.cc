@@ -24,8 +24,9 @@ constexpr double kMaxSlope = 0.011;
 std::string DepthLookupOptions::Check() const {
   const std::string noise_error = noise.Check();
   if (!noise_error.empty()) return "depth noise: " + noise_error;
-  if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
-    return "depth limits must satisfy 0 < min_depth < max_depth";
+  constexpr double kMost = 1000.0;  // m
+  if (!(min_depth > 0.0 && max_depth > min_depth && max_depth <= kMost)) {
+    return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
   return "";
 }

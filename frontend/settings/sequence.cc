@@ -106,7 +106,8 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
        "if any; none: no comparison",
        &settings->groundtruth},
       {"max_damaged", kGroup,
-       "largest share of damaged or missing frames, which are skipped; with "
+       "largest share, 0 to 1, of damaged or missing frames, which are "
+       "skipped; with "
        "more (at least three) the run stops early and keeps its results",
        &settings->max_damaged},
   };
@@ -149,8 +150,8 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
     sequence.remarks.push_back(options.camera->remark);
   }
   sequence.inputs.max_damaged = settings.max_damaged;
-  if (!(settings.max_damaged >= 0.0)) {
-    throw InputError("max_damaged: must not be negative");
+  if (!(settings.max_damaged >= 0.0 && settings.max_damaged <= 1.0)) {
+    throw InputError("max_damaged must be 0 to 1, a share of the frames");
   }
   const FrameRange range = ParseFrameRange(settings.frames);
   sequence.source = PartOf(OpenSource(settings.source, options), range);

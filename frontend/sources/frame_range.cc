@@ -170,6 +170,12 @@ FrameSelection::FrameSelection(const std::string& flag,
   }
 }
 
+int FrameSelection::LastBegin() const {
+  int last = -1;
+  for (const FrameRange& range : ranges_) last = std::max(last, range.first);
+  return last;
+}
+
 bool FrameSelection::Contains(int index) const {
   return std::any_of(ranges_.begin(), ranges_.end(),
                      [index](const FrameRange& r) {

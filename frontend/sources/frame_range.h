@@ -42,6 +42,9 @@ class FrameSelection {
   // Whether the frame at this place in its dataset (from 0) is selected.
   bool Contains(int index) const;
 
+  // The largest of the first numbers of its ranges; -1 if it is empty.
+  int LastBegin() const;
+
  private:
   std::vector<FrameRange> ranges_;
 };

@@ -26,13 +26,20 @@ std::string WithFullDisk(int blocks, const std::string& command) {
 
 TEST_F(BadInputTest, OutputsThatCannotBe) {
   const auto file = [](const Seq& seq) { seq.Write("file", "mine"); };
+  constexpr char kOwn[] = "is in the recording's own folder {seq}; choose one";
   ExpectEach(
       Odometry(),
       {
-          {"below a file", file, "--output={seq}/file/out", 2,
-           "--output: {seq}/file/out cannot be created"},
-          {"a file", file, "--output={seq}/file", 2,
-           "--output: {seq}/file cannot be created"},
+          {"below a file", nullptr, "--output={dir}/small.yaml/out", 2,
+           "--output: {dir}/small.yaml/out cannot be created"},
+          {"a file", nullptr, "--output={dir}/small.yaml", 2,
+           "--output: {dir}/small.yaml cannot be created"},
+          {"the recording itself", nullptr, "--output={seq}", 2, kOwn},
+          {"the recording by a detour", nullptr, "--output={dir}/./seq/", 2,
+           kOwn},
+          {"within the recording", nullptr, "--output={seq}/runs/out", 2, kOwn},
+          {"beside the recording, with its name", nullptr, "--output={seq}_run",
+           0, ""},
           {"where none can be made", nullptr, "--output=/proc/none", 2,
            "--output: /proc/none cannot be created"},
           {"the cloud's folder is missing", nullptr,
@@ -61,6 +68,16 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
           {"simulate: a folder in use", nullptr,
            RGBD_SIMULATE " --frames=2 --output={seq}", 2,
            "{seq}: already exists and is not an empty folder"},
+          {"convert: within the recording", nullptr,
+           RGBD_CONVERT " --dataset={seq} --output={seq}/out", 2, kOwn},
+          {"slam: within the recording", nullptr,
+           RGBD_SLAM " --dataset={seq} --output={seq}/out", 2, kOwn},
+          {"calibrate: within the recording", nullptr,
+           RGBD_CALIBRATE " --dataset={seq} --output={seq}/out", 2, kOwn},
+          {"compare: within the recording", nullptr,
+           RGBD_COMPARE " --experiment={seq} --camera={seq}/camera.yaml "
+                        "--output={seq}/out",
+           2, kOwn},
           {"compare: below a file", file, kSweep + "--output={seq}/file/out", 2,
            "--output={seq}/file/out: cannot be created (Not a directory)"},
           {"batch: below a file",

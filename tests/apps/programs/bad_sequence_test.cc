@@ -129,7 +129,11 @@ TEST_F(BadInputTest, Images) {
           {"all damaged, few allowed", Gone("depth"), "--max_damaged=0", 2,
            "{seq}/depth/1000.000000.png"},
           {"a share below none", nullptr, "--max_damaged=-1", 2,
-           "max_damaged: must not be negative"},
+           "max_damaged must be 0 to 1, a share of the frames"},
+          {"a share in percent", nullptr, "--max_damaged=50", 2,
+           "max_damaged must be 0 to 1, a share of the frames"},
+          {"a share that is no number", nullptr, "--max_damaged=nan", 2,
+           "max_damaged must be 0 to 1, a share of the frames"},
           {"no depth anywhere",
            [](const Seq& s) {
              for (const char* time : {"00000", "33333", "66667"}) {

@@ -124,7 +124,7 @@ TEST_F(BadInputTest, OfCalibrations) {
           {"a part that is not there", nullptr, "--fix=size", 2,
            "fix: unknown parameter 'size'; available: focal, centre"},
           {"the recording's own folder", nullptr, "--output={seq}", 2,
-           "--output: must be another folder than {seq}"},
+           "--output={seq}: is in the recording's own folder {seq}"},
           {"a length without times", nullptr, "--known_length=1.5", 2,
            "known_length: must be T0,T1,METRES, not '1.5'"},
           {"a share that is none", nullptr, "--determined_share=2", 2,

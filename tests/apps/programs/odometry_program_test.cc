@@ -60,6 +60,14 @@ std::string WithoutTimes(const std::string& csv) {
   return result;
 }
 
+TEST_F(OdometryProgramTest, SaysWhichDebugImagesThereCannotBe) {
+  const RunResult run = Run(Call("run") + " --noreport --debug_images=2,500");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("--debug_images: there is no frame 500; the "
+                                 "6 frames are numbered from 0\n"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run/debug/000002.png"));
+}
+
 TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   const RunResult run = Run(Call("run"));
   ASSERT_EQ(run.exit_code, 0) << run.err;

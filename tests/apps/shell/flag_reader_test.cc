@@ -1,6 +1,8 @@
 #include <gflags/gflags.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "apps/shell/program.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
@@ -23,6 +25,32 @@ TEST(FlagReaderTest, TakesTheFormsOfGflags) {
   ReadFlags({"--test_switch=true", "--test_number=1", "--test_number=2"});
   EXPECT_TRUE(FLAGS_test_switch);
   EXPECT_EQ(FLAGS_test_number, 2) << "the last one counts";
+}
+
+// Shells do not replace it in --flag=~/path.
+TEST(FlagReaderTest, KnowsTheHomeFolder) {
+  const char* const before = std::getenv("HOME");
+  const std::string home = before == nullptr ? "" : before;
+  setenv("HOME", "/home/me", 1);
+  const std::pair<std::string, std::string> kCases[] = {
+      {"~/runs/x", "/home/me/runs/x"},
+      {"~", "/home/me"},
+      {"~/a,~/b", "/home/me/a,/home/me/b"},
+      {"a~/b", "a~/b"},
+      {"~other/x", "~other/x"},
+      {"./~/x", "./~/x"},
+      {"a, b,", "a, b,"},
+      {",", ","}};
+  for (const auto& [word, value] : kCases) {
+    ReadFlags({"--test_word=" + word});
+    EXPECT_EQ(FLAGS_test_word, value);
+    ReadFlags({"--test_word", word});
+    EXPECT_EQ(FLAGS_test_word, value);
+  }
+  unsetenv("HOME");
+  ExpectInputError([] { ReadFlags({"--test_word=~/x"}); },
+                   {"'~/x': there is no home folder (HOME)"});
+  setenv("HOME", home.c_str(), 1);
 }
 
 TEST(FlagReaderTest, ReadsFilesInTheirPlace) {

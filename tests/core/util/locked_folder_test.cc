@@ -39,6 +39,21 @@ TEST(LockedFolderTest, WithSomethingPreciousIsNotEmptied) {
   EXPECT_FALSE(fs::exists(folder / "new/list.txt"));
 }
 
+TEST(LockedFolderTest, AllAreRemovedBeforeAProgramEnds) {
+  const TempFolder folder;
+  const LockedFolder first(folder / "first", "first");
+  const LockedFolder moved(folder / "moved", "moved");
+  const LockedFolder kept(folder / "kept", "kept", "list.txt");
+  { const LockedFolder gone(folder / "gone", "gone"); }
+  folder.Write("first/below/file.txt", "");
+  folder.Write("kept/list.txt", "");
+  fs::rename(folder / "moved", folder / "results");
+  LockedFolder::RemoveAll();
+  EXPECT_FALSE(fs::exists(folder / "first"));
+  EXPECT_TRUE(fs::exists(folder / "results"));
+  EXPECT_TRUE(fs::exists(folder / "kept/list.txt"));
+}
+
 TEST(LockedFolderTest, ThatWasMovedLeavesTheNextOneAlone) {
   const TempFolder folder;
   const fs::path path = folder / "new";

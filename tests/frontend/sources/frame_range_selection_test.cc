@@ -48,6 +48,12 @@ TEST(FrameSelectionTest, AllHasEveryFrame) {
   EXPECT_FALSE(all.Contains(-1));
 }
 
+TEST(FrameSelectionTest, KnowsHowManyFramesItNeeds) {
+  EXPECT_EQ(FrameSelection("pictures", "").LastBegin(), -1);
+  EXPECT_EQ(FrameSelection("pictures", "all").LastBegin(), 0);
+  EXPECT_EQ(FrameSelection("pictures", "3,10-20,7").LastBegin(), 10);
+}
+
 TEST(FrameSelectionTest, RejectsOtherText) {
   struct {
     std::string text;

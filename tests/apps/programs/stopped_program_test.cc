@@ -1,4 +1,4 @@
-// rgbd_convert that is stopped: what it has recorded is kept.
+// Programs that are stopped by a signal: what they keep and what they leave.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,9 +20,9 @@ constexpr int kFrames = 8;
 constexpr int kStopAt = 4;  // the frame that is being read then
 
 // A recording that waits for its depth image `kStopAt` like a camera: a pipe.
-class ConvertProgramTest : public testing::Test {
+class StoppedProgramTest : public testing::Test {
  protected:
-  ConvertProgramTest() {
+  StoppedProgramTest() {
     folder_.Write("small.yaml",
                   "Camera.fx: 131\nCamera.fy: 131\nCamera.cx: 79.5\n"
                   "Camera.cy: 59.5\nCamera.width: 160\nCamera.height: 120\n");
@@ -42,17 +42,24 @@ class ConvertProgramTest : public testing::Test {
     EXPECT_EQ(mkfifo(pipe_.c_str(), 0600), 0);
   }
 
-  // Runs a shell command that sends a signal to process $id when all frames
-  // before the stalled one are written, then lets the camera go on.
-  RunResult ConvertUntil(const std::string& signal) const {
+  // Runs a program. When a condition holds, which is a shell command, another
+  // one sends signals to process $id; then the camera goes on.
+  RunResult RunUntil(const std::string& condition, const std::string& signal,
+                     const std::string& program) const {
     std::signal(SIGINT, SIG_DFL);  // a test in the background ignores SIGINT
     const std::string command =
-        "{ id=$$; out='" + folder_ / "out.partial" +
-        "'; ( until [ \"$(cat $out/rgb.txt | wc -l)\" -ge " +
-        std::to_string(kStopAt) + " ]; do sleep 0.01; done 2>/dev/null; " +
-        signal + "; timeout 20 cp '" + folder_ / "image.png" + "' '" + pipe_ +
-        "' ) >/dev/null 2>&1 & exec " + Convert() + " ; }";
+        "{ id=$$; tries=0; ( until " + condition +
+        " || [ $((tries=tries+1)) = 1000 ]; do sleep 0.01; done; " + signal +
+        "; timeout 20 cp '" + folder_ / "image.png" + "' '" + pipe_ +
+        "' ) >/dev/null 2>&1 & exec " + program + " ; }";
     return RunCommand(command, folder_);
+  }
+
+  // When all frames before the stalled one are written.
+  RunResult ConvertUntil(const std::string& signal) const {
+    return RunUntil("[ $(cat '" + folder_ / "out.partial/rgb.txt" +
+                        "' | wc -l) -ge " + std::to_string(kStopAt) + " ]",
+                    signal, Convert());
   }
 
   std::string Convert() const {
@@ -73,7 +80,7 @@ class ConvertProgramTest : public testing::Test {
   std::string pipe_;
 };
 
-TEST_F(ConvertProgramTest, ASignalEndsItWithWhatThereIs) {
+TEST_F(StoppedProgramTest, ASignalEndsItWithWhatThereIs) {
   for (const std::string name : {"INT", "TERM"}) {
     const RunResult run = ConvertUntil("kill -" + name + " $id");
     EXPECT_EQ(run.exit_code, 6) << run.err;
@@ -91,7 +98,7 @@ TEST_F(ConvertProgramTest, ASignalEndsItWithWhatThereIs) {
   }
 }
 
-TEST_F(ConvertProgramTest, WhatAKilledOneRecordedIsNotOverwritten) {
+TEST_F(StoppedProgramTest, WhatAKilledOneRecordedIsNotOverwritten) {
   EXPECT_NE(ConvertUntil("kill -KILL $id; exit").exit_code, 6);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   const RunResult next = RunCommand(Convert(), folder_);
@@ -99,6 +106,25 @@ TEST_F(ConvertProgramTest, WhatAKilledOneRecordedIsNotOverwritten) {
   EXPECT_THAT(next.err, HasSubstr("out.partial holds what a killed program"));
   fs::rename(folder_ / "out.partial", folder_ / "kept");
   EXPECT_THAT(ReadBack("kept"), HasSubstr("frames      4, all readable"));
+}
+
+TEST_F(StoppedProgramTest, OneThatEndsAtOnceLeavesNothingUnfinished) {
+  const std::string words = " --threads=1 --dataset=" + folder_ / "camera" +
+                            " --output=" + folder_ / "out";
+  const std::string unfinished = folder_ / "out/.rgbd_odometry.partial";
+  for (const std::string& program :
+       {RGBD_CALIBRATE + words,
+        RGBD_ODOMETRY " --nofinish_on_signal" + words}) {
+    for (const std::string name : {"INT", "TERM"}) {
+      const RunResult run = RunUntil("[ -d '" + unfinished + "' ]",
+                                     "kill -" + name + " $id; exit", program);
+      EXPECT_EQ(run.exit_code, -1) << "not ended by the signal";
+      EXPECT_EQ(run.err, "");
+      EXPECT_TRUE(fs::exists(folder_ / "out"));
+      EXPECT_TRUE(fs::is_empty(folder_ / "out")) << program;
+      fs::remove_all(folder_ / "out");
+    }
+  }
 }
 
 }  // namespace
