@@ -188,8 +188,10 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
     known_before.noalias() += row * row.transpose();
   }
   known_before.diagonal().tail<kCalibrationSize>().array() += 1.0;
-  // For poses that no landmark determines.
-  known_before.diagonal().head(y_at).array() += 1e-9;
+  // For keyframes that no landmark connects with the first one: little, but
+  // more than rounding errors.
+  known_before.diagonal().head(y_at).array() +=
+      1e-9 + 1e-12 * equations.hessian.diagonal().maxCoeff();
 
   Eigen::MatrixXd last;  // columns of the inverse
   const auto invert = [&](double slope) {

@@ -63,6 +63,7 @@ struct CalibrationSteps {
   CalibrationData data = {};
   CalibrationVector undone = CalibrationVector::Zero();  // in depths of `data`
   CalibrationPrior prior = {};
+  FreeParts earlier = {};              // determined in earlier passes
   CalibrationVector start = {};        // theta of the first camera
   CalibrationViews views_before = {};  // with depths as first looked up
   CalibrationState before = {};        // the solution with the first camera
@@ -76,7 +77,7 @@ struct CalibrationSteps {
   BundleAdjustment Training() const { return {data.views, prior, true}; }
 
   void Collect(const Trajectory& path, const CalibrationScale& scale,
-               const RgbdCamera& known) {
+               const EarlierPasses& passes) {
     result.camera = result.found = first;
     data = CollectCalibrationData(map, path, odometry, settings.max_views,
                                   threads);
@@ -87,7 +88,8 @@ struct CalibrationSteps {
     result.landmarks = static_cast<int>(data.views.landmarks.size());
     result.views = static_cast<int>(data.views.views.size());
     start = ThetaOf(map.camera);
-    prior.mean = ThetaBetween(first, known);
+    prior.mean = ThetaBetween(first, passes.first);
+    earlier = passes.determined;
     const CalibrationVector values = CameraValues(first, first);
     asked = FreeParameters(settings.fix, !data.views.distances.empty(),
                            map.camera.lens_model);
@@ -106,7 +108,7 @@ struct CalibrationSteps {
     before = Training().Begin(start);
     Training().MeasureScales(&before);
     SolveWithScales(Training(), FreeParts{}, &before);
-    result.noise =
+    result.noise = result.noise_before =
         FitDepthNoise(views_before, before, odometry.features.depth.noise);
   }
 
@@ -169,7 +171,9 @@ struct CalibrationSteps {
 
   // The difference of the halves shows how wide the error bars have to be.
   void CompareHalves() {
-    result.halves = SplitHalfConsistency(data.views, after, needed, prior);
+    const FreeParts changed = needed | earlier;
+    if (changed.none()) return;
+    result.halves = SplitHalfConsistency(data.views, after, changed, prior);
     const double spread = SpreadOfHalves(result.halves);
     result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
     for (HalvesOfParameter& half : result.halves) {
@@ -211,7 +215,7 @@ struct CalibrationSteps {
     }
     std::vector<HalvesOfParameter> halves;
     for (const HalvesOfParameter& half : result.halves) {
-      if (determined[half.part]) halves.push_back(half);
+      if ((determined | earlier)[half.part]) halves.push_back(half);
     }
     result.halves = halves;
     SolveWithScales(Training(), determined, &after);
@@ -242,13 +246,14 @@ struct CalibrationSteps {
   }
 
   void AcceptOrReject() {
-    result.reason = RejectionReason(first, settings, result);
-    if (!result.reason.empty()) return;
-    result.is_accepted = true;
-    result.camera = result.found;
-    result.noise =
-        FitDepthNoise(data.views, after, odometry.features.depth.noise);
-    result.UseNoise();
+    std::string why_not = WhyNoBetter(first, settings, result);
+    result.is_better = why_not.empty();
+    if (result.is_better) {
+      result.noise_found =
+          FitDepthNoise(data.views, after, odometry.features.depth.noise);
+      why_not = WhyUnchecked(settings, result);
+    }
+    result.Conclude(first, why_not);
   }
 };
 
@@ -259,14 +264,15 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const OdometrySettings& odometry,
                             const CalibrationSettings& settings,
                             const CalibrationScale& scale, int threads,
-                            const RgbdCamera* known) {
+                            const EarlierPasses* earlier) {
   RequireSound(settings.Check(), "calibration: ");
   OdometrySettings relative = odometry;
   // The spread of pixels is measured relative to what the frontend states.
   relative.features.feature_noise = 1.0;
   CalibrationSteps steps{map, first, relative, settings, threads};
   CalibrationResult& result = steps.result;
-  steps.Collect(path, scale, known != nullptr ? *known : first);
+  steps.Collect(path, scale,
+                earlier != nullptr ? *earlier : EarlierPasses{first, {}});
   constexpr int kMinViews = 100;
   if (result.views < kMinViews) {
     result.reason = "the camera hardly moved: only " +
@@ -279,13 +285,13 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   steps.LookUpDisplacedDepths(/*max_rounds=*/4);
   steps.ResetUnneeded();
   steps.LookUpDisplacedDepths(/*max_rounds=*/1);
+  steps.CompareHalves();
   if (steps.needed.none()) {
     result.reason = steps.asked.none() ? "all parameters are fixed"
                                        : "no error found: held-out pairs fit "
                                          "no better with another camera";
     return result;
   }
-  steps.CompareHalves();
   steps.FindDetermined();
   if (steps.determined.none()) {
     result.reason = "the recording determines none of the camera's parameters";

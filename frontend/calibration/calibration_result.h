@@ -75,7 +75,10 @@ struct CalibrationResult {
   // first camera corrects it.
   std::array<CalibratedParameter, kCalibrationSize> parameters;
 
-  // Whether it is accepted. If not, `camera` is the first one: see `reason`.
+  // Whether the camera found is better than the first one. It is accepted if
+  // the halves of the recording confirm it. If not, `camera` is the first one:
+  // see `reason`.
+  bool is_better = false;
   bool is_accepted = false;
   std::string reason;
   RgbdCamera camera;
@@ -103,12 +106,28 @@ struct CalibrationResult {
   double depth_after = 0.0;   // with the camera found
   std::vector<HeldOutResidual> residuals;
 
-  // Depth noise with the resulting camera; empty if there are too few depths.
-  std::optional<DepthNoiseFit> noise;
+  // Depth noise with the resulting camera, with the first one and with the one
+  // found; empty if there are too few depths.
+  std::optional<DepthNoiseFit> noise, noise_before, noise_found;
 
-  // Takes the noise, if it is plausible, into the camera.
-  void UseNoise() {
-    if (noise.has_value() && noise->IsPlausible()) {
+  // The parameters that are determined.
+  FreeParts Determined() const {
+    FreeParts determined;
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      determined[k] =
+          parameters[k].status == CalibratedParameter::Status::kDetermined;
+    }
+    return determined;
+  }
+
+  // Accepts the camera found, with its noise if that is plausible, unless there
+  // is a reason not to. Then `camera` is `first`.
+  void Conclude(const RgbdCamera& first, const std::string& why_not) {
+    reason = why_not;
+    is_accepted = why_not.empty();
+    camera = is_accepted ? found : first;
+    noise = is_accepted ? noise_found : noise_before;
+    if (is_accepted && noise.has_value() && noise->IsPlausible()) {
       camera.depth_noise = noise->model;
     }
   }
@@ -118,7 +137,8 @@ struct CalibrationResult {
   double truth_before = 0.0;  // with the first camera
   double truth_after = 0.0;   // with the camera found
 
-  // The halves' estimates of the determined parameters; may be empty.
+  // The halves' estimates of the parameters that this and earlier passes
+  // determined; empty if a half does not determine them.
   std::vector<HalvesOfParameter> halves;
 
   // Factor on error bars, if the halves differ by more than residuals explain.

@@ -6,54 +6,10 @@
 
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
-#include "frontend/calibration/calibration_verdict.h"
+#include "frontend/calibration/calibration_passes.h"
 
 namespace rgbd_pose {
 namespace {
-
-using Status = CalibratedParameter::Status;
-
-// Merges the result of a further pass, which started from the last result and
-// is closer to the linearisation point. Returns whether it is usable.
-bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
-            const CalibrationResult& further, CalibrationResult* all) {
-  ++all->passes;
-  const std::string disagree = WhyHalvesDisagree(settings, further);
-  if (!disagree.empty()) {
-    all->is_accepted = false;
-    all->reason = disagree;
-    all->halves = further.halves;
-    all->halves_spread = further.halves_spread;
-    all->camera = first;
-    return false;
-  }
-  if (further.held_out_pairs < 2 || further.gain_sigmas < -kMinSigmas ||
-      further.truth_after > all->truth_after) {
-    return false;
-  }
-  CalibrationResult merged = *all;
-  const CalibrationVector values = CameraValues(first, further.found);
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    CalibratedParameter& parameter = merged.parameters[k];
-    if (further.parameters[k].status == Status::kDetermined) {
-      parameter.status = Status::kDetermined;
-      parameter.sigma = further.parameters[k].sigma;
-    }
-    if (parameter.status == Status::kDetermined) parameter.found = values[k];
-  }
-  merged.camera = merged.found = further.found;
-  merged.reason = ImplausibilityReason(first, merged);
-  if (!merged.reason.empty()) return false;
-  merged.noise = further.noise;
-  merged.UseNoise();
-  merged.halves = further.halves;
-  merged.halves_spread = further.halves_spread;
-  merged.pixel_after = further.pixel_after;
-  merged.depth_after = further.depth_after;
-  merged.truth_after = further.truth_after;
-  *all = merged;
-  return true;
-}
 
 // Returns the range of frames (first-last:step) that reduces the frame rate to
 // `max_rate`, or an empty string if no frame has to be left out.
@@ -105,7 +61,7 @@ RecordingCalibration CalibrateRecording(
     const std::function<void(int pass, int done, int all)>& on_frame) {
   RequireSound(settings.Check(), "calibration: ");
   RecordingCalibration all;
-  RgbdCamera first;
+  EarlierPasses earlier;
   SequenceSettings part = sequence;
   OdometrySettings with_shutter = odometry;
   with_shutter.odometry.shutter = ShutterUse::kCamera;
@@ -126,7 +82,6 @@ RecordingCalibration CalibrateRecording(
     known->color_shutter = known->depth_shutter = Shutter();
   }
   for (int pass = 1;; ++pass) {
-    if (pass > 1) known = all.result.camera;
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
     const int frames = static_cast<int>(opened.source->timestamps().size());
@@ -148,20 +103,21 @@ RecordingCalibration CalibrateRecording(
     const CalibrationResult result = Calibrate(
         run.slam()->Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
         settings, {truth, opened.inputs.motion_guess.get()}, threads,
-        pass > 1 ? &first : nullptr);
+        pass > 1 ? &earlier : nullptr);
     all.path = run.slam()->Path();
     if (pass == 1) {
-      first = camera;
+      earlier.first = camera;
       all.result = result;
+    } else {
+      TakeUp(earlier.first, settings, result, &all.result);
     }
-    const bool goes_on = pass == 1
-                             ? result.is_accepted
-                             : TakeUp(first, settings, result, &all.result);
     // A live camera cannot be read again.
-    if (!goes_on || frames == 0 || pass >= settings.max_passes ||
+    if (frames == 0 || pass >= settings.max_passes ||
         !IsAnotherPassDue(result)) {
       return all;
     }
+    known = all.result.found;
+    earlier.determined = all.result.Determined();
   }
 }
 

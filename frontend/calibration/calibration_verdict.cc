@@ -9,6 +9,7 @@
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
+#include "frontend/calibration/calibration_passes.h"
 
 namespace rgbd_pose {
 namespace {
@@ -153,10 +154,6 @@ double TruthError(const CalibrationData& data, const CalibrationState& state,
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-bool IsAnotherPassDue(const CalibrationResult& result) {
-  return result.displacement_px > 1.0;
-}
-
 std::string WhatIsLeft(const CalibrationResult& result) {
   constexpr double kOfFeatures = 0.3;  // px, with rendered recordings
   const double px = 0.5 * result.pixel_after;
@@ -165,20 +162,25 @@ std::string WhatIsLeft(const CalibrationResult& result) {
                 kOfFeatures);
 }
 
-std::string WhyHalvesDisagree(const CalibrationSettings& settings,
-                              const CalibrationResult& result) {
+std::string WhyUnchecked(const CalibrationSettings& settings,
+                         const CalibrationResult& result) {
   const HalvesOfParameter* worst = WorstOfHalves(result);
-  if (worst == nullptr || !(worst->Sigmas() > settings.max_halves_sigmas)) {
-    return "";
-  }
+  if (worst == nullptr) return HalvesInWords(result);
+  if (worst->Sigmas() <= settings.max_halves_sigmas) return "";
   const CalibrationParameter& row = kCalibrationParameters[worst->part];
-  return Format(
+  const std::string disagree = Format(
       "the halves of the recording disagree: %s differs by %.3g%s%s (%.3g "
-      "standard deviations), so there is an error that no parameter describes "
-      "(%s)",
+      "standard deviations)",
       row.name, std::abs(worst->second - worst->first),
-      row.unit[0] == '\0' ? "" : " ", row.unit, worst->Sigmas(),
-      WhatIsLeft(result).c_str());
+      row.unit[0] == '\0' ? "" : " ", row.unit, worst->Sigmas());
+  if (result.passes == 1 && IsAnotherPassDue(result)) {
+    return disagree + Format(
+                          ", as images were displaced by %.1f px; another pass "
+                          "is needed",
+                          result.displacement_px);
+  }
+  return disagree + ", so there is an error that no parameter describes (" +
+         WhatIsLeft(result) + ")";
 }
 
 std::string HalvesInWords(const CalibrationResult& result) {
@@ -240,9 +242,9 @@ std::string ImplausibilityReason(const RgbdCamera& first,
   return "";
 }
 
-std::string RejectionReason(const RgbdCamera& first,
-                            const CalibrationSettings& settings,
-                            const CalibrationResult& result) {
+std::string WhyNoBetter(const RgbdCamera& first,
+                        const CalibrationSettings& settings,
+                        const CalibrationResult& result) {
   if (result.held_out_pairs < 2) {
     return "there are too few held-out pairs to evaluate the new camera";
   }
@@ -265,10 +267,6 @@ std::string RejectionReason(const RgbdCamera& first,
         "the ground truth contradicts it: motions of pairs are wrong by %.3g "
         "mm instead of %.3g mm",
         1e3 * result.truth_after, 1e3 * result.truth_before);
-  }
-  if (!IsAnotherPassDue(result)) {
-    std::string disagree = WhyHalvesDisagree(settings, result);
-    if (!disagree.empty()) return disagree;
   }
   const bool has_moved = std::any_of(
       result.parameters.begin(), result.parameters.end(),

@@ -20,15 +20,13 @@ void CompareHeldOut(const CalibrationViews& views_before,
 double TruthError(const CalibrationData& data, const CalibrationState& state,
                   const Trajectory& truth);
 
-// Whether depth was displaced so far that the result is only a first step.
-bool IsAnotherPassDue(const CalibrationResult& result);
-
 // Describes in words how far the residuals spread with the camera found.
 std::string WhatIsLeft(const CalibrationResult& result);
 
-// Explains why the halves of a recording contradict each other, or empty.
-std::string WhyHalvesDisagree(const CalibrationSettings& settings,
-                              const CalibrationResult& result);
+// Explains why the halves of a recording do not confirm the camera found: they
+// contradict each other or cannot be compared. Empty if they confirm it.
+std::string WhyUnchecked(const CalibrationSettings& settings,
+                         const CalibrationResult& result);
 
 // Describes in words how well the halves of a recording agree.
 std::string HalvesInWords(const CalibrationResult& result);
@@ -37,9 +35,9 @@ std::string HalvesInWords(const CalibrationResult& result);
 std::string ImplausibilityReason(const RgbdCamera& first,
                                  const CalibrationResult& result);
 
-// Explains why the camera found must not replace the first one, or empty.
-std::string RejectionReason(const RgbdCamera& first,
-                            const CalibrationSettings& settings,
-                            const CalibrationResult& result);
+// Explains why the camera found is no better than the first one, or empty.
+std::string WhyNoBetter(const RgbdCamera& first,
+                        const CalibrationSettings& settings,
+                        const CalibrationResult& result);
 
 }  // namespace rgbd_pose

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/util/quantile.h"
 #include "costs/calibration/landmark_residuals.h"
@@ -170,6 +171,30 @@ TEST(BundleAdjustmentTest, TheFirstKeyframeMaySeeNothing) {
   }
   CalibrationState state = world.Problem().Begin(world.start);
   EXPECT_TRUE(std::isfinite(world.Problem().Solve(World::FreeFocal(), &state)));
+}
+
+// In half of a recording, keyframes may be connected through the other half
+// only. Then their motion is not determined, but the camera is.
+TEST(BundleAdjustmentTest, KeyframesNeedNotBeConnected) {
+  World world;
+  std::vector<LandmarkView> views;
+  for (Landmark& landmark : world.views.landmarks) {
+    const int first = landmark.first_view;
+    landmark.first_view = static_cast<int>(views.size());
+    for (int k = first; k < first + landmark.num_views; ++k) {
+      const LandmarkView& view = world.views.views[k];
+      if (landmark.anchor != 0 && view.keyframe != 0) views.push_back(view);
+    }
+    landmark.num_views = static_cast<int>(views.size()) - landmark.first_view;
+  }
+  world.views.views = views;
+  // As much information as thousands of views have.
+  world.truth.pixel_scale = world.truth.depth_scale = 0.01;
+  const auto variances =
+      world.Problem().Variances(World::FreeFocal(), world.truth);
+  ASSERT_TRUE(variances.has_value());
+  EXPECT_GT((*variances)[kFx], 0.0);
+  EXPECT_LT((*variances)[kFx], 1e-2 * world.prior[kFx] * world.prior[kFx]);
 }
 
 // Scales are medians of residuals: 0.6 px in u and 0.4 px in v; 0.5 sigma in

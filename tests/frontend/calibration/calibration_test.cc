@@ -251,7 +251,7 @@ TEST(CalibrationTest, ASolutionThatIsWorseThanTheMapIsAFailure) {
   result.cost_before = 3.0;
   result.cost_after = 2.0;
   result.gain_sigmas = 5.0;
-  EXPECT_NE(RejectionReason({}, {}, result).find("the solution fails"),
+  EXPECT_NE(WhyNoBetter({}, {}, result).find("the solution fails"),
             std::string::npos);
 }
 
@@ -274,7 +274,7 @@ TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   const CalibrationResult result = Mapped(Handheld(), wrong).Calibrate();
   EXPECT_TRUE(result.is_accepted) << result.reason;
   ASSERT_FALSE(result.halves.empty());
-  EXPECT_EQ(WhyHalvesDisagree({}, result), "");
+  EXPECT_EQ(WhyUnchecked({}, result), "");
   for (const HalvesOfParameter& half : result.halves) {
     EXPECT_EQ(Of(result, static_cast<CalibrationIndex>(half.part)).status,
               Status::kDetermined);
@@ -292,13 +292,13 @@ TEST(CalibrationTest, HalvesWidenErrorBars) {
 TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {
   CalibrationResult result;
   result.halves = {{kCx, 320.0, 321.0, 1.0}, {kFx, 520.0, 530.0, 2.0}};
-  const std::string why = WhyHalvesDisagree({}, result);
+  const std::string why = WhyUnchecked({}, result);
   EXPECT_NE(why.find("disagree: fx differs by 10 px (5 standard deviations)"),
             std::string::npos)
       << why;
   CalibrationSettings lenient;
   lenient.max_halves_sigmas = 6.0;
-  EXPECT_EQ(WhyHalvesDisagree(lenient, result), "");
+  EXPECT_EQ(WhyUnchecked(lenient, result), "");
 }
 
 TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
