@@ -68,9 +68,10 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
   settings.max_passes = max_passes;
   settings.max_views = max_views;
   const ReleasedGil no_gil;
-  return {CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
-                             settings, NumThreads(threads),
-                             [](int, int, int) { ThrowIfInterrupted(); })
+  return {CalibrateRecording(
+              sequence, CalibrationOdometry(), CalibrationSlam(), settings,
+              NumThreads(threads), [](int, int, int) { ThrowIfInterrupted(); },
+              [](int, int) { ThrowIfInterrupted(); })
               .result,
           sequence.camera};
 }

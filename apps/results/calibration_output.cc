@@ -32,6 +32,10 @@ RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
           shown = pass;
         }
         bar->Update(done);
+      },
+      [&](int /*pass*/, int done) {
+        if (done == 1) bar.emplace("solving for the camera, iteration", 0);
+        bar->Update(done);
       });
   Warn(calibration.left_out);
   return calibration;

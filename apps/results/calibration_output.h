@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-// Calls CalibrateRecording and shows a progress bar for each pass.
+// Calls CalibrateRecording and shows its progress for each pass.
 RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
                                            const OdometrySettings& odometry,
                                            const SlamSettings& slam,

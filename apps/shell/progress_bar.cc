@@ -27,16 +27,20 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::Update(int done) {
-  if (!visible_ || total_ <= 0) return;
+  if (!visible_) return;
   const Clock::time_point now = Clock::now();
-  if (done < total_ && now - last_drawn_ < kRedrawEvery) return;
+  if (done != total_ && now - last_drawn_ < kRedrawEvery) return;
   last_drawn_ = now;
-  const int filled = kBarWidth * done / total_;
-  const std::string bar =
-      std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  std::fprintf(stderr, "\r\033[K%s [%s] %d/%d, %s left", label_.c_str(),
-               bar.c_str(), done, total_, TimeLeft(done).c_str());
+  std::fprintf(stderr, "\r\033[K%s", Text(done).c_str());
   std::fflush(stderr);
+}
+
+std::string ProgressBar::Text(int done) const {
+  if (total_ <= 0) return label_ + " " + std::to_string(done);
+  const int filled = kBarWidth * done / total_;
+  return label_ + " [" + std::string(filled, '#') +
+         std::string(kBarWidth - filled, '.') +
+         Format("] %d/%d, ", done, total_) + TimeLeft(done) + " left";
 }
 
 void ProgressBar::PrintLine(const std::string& line) {

@@ -5,7 +5,8 @@
 
 namespace rgbd_pose {
 
-// A progress bar on stderr, if this is a terminal; erased on destruction.
+// A progress bar on stderr, if this is a terminal; erased on destruction. If
+// the total is unknown (0), it is only a number.
 class ProgressBar {
  public:
   ProgressBar(std::string label, int total);
@@ -21,6 +22,9 @@ class ProgressBar {
 
   // Whether the bar is drawn.
   bool visible() const { return visible_; }
+
+  // What is drawn: "tracking [###...] 50/100, 12 s left", or "tracking 50".
+  std::string Text(int done) const;
 
   // The estimated remaining time: "12 s", "3 h 05 min".
   std::string TimeLeft(int done) const;

@@ -1,5 +1,6 @@
 #include "costs/calibration/bundle_adjustment.h"
 
+#include <ceres/iteration_callback.h>
 #include <ceres/loss_function.h>
 #include <ceres/normal_prior.h>
 #include <ceres/problem.h>
@@ -7,10 +8,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
+namespace {
+
+// Reports iterations. An exception must not pass through the solver.
+class IterationReport : public ceres::IterationCallback {
+ public:
+  explicit IterationReport(const std::function<void()>& report)
+      : report_(report) {}
+
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary& /*summary*/) override {
+    try {
+      if (report_) report_();
+      return ceres::SOLVER_CONTINUE;
+    } catch (...) {
+      thrown_ = std::current_exception();
+      return ceres::SOLVER_ABORT;
+    }
+  }
+
+  // To be called after the solver ended.
+  void PassOn() const {
+    if (thrown_ != nullptr) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  const std::function<void()>& report_;
+  std::exception_ptr thrown_;
+};
+
+}  // namespace
 
 CalibrationState BundleAdjustment::Begin(const CalibrationVector& theta) const {
   CalibrationState state = {views_.world_from_cam, {}, theta};
@@ -139,8 +171,11 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   options.function_tolerance = 1e-5;
   options.initial_trust_region_radius = 1e6;
   options.logging_type = ceres::SILENT;
+  IterationReport report(on_iteration_);
+  options.callbacks.push_back(&report);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  report.PassOn();
   if (!summary.IsSolutionUsable()) {
     return NAN;
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
+#include <utility>
 
 #include "core/geometry/motion.h"
 #include "costs/calibration/calibration_parameters.h"
@@ -20,12 +22,18 @@ struct CalibrationPrior {
 class BundleAdjustment {
  public:
   // `views` must outlive this object. `training_only`: without held-out views.
+  // `on_iteration`, unless empty, is called after each iteration of Solve,
+  // which passes on what it throws.
   BundleAdjustment(const CalibrationViews& views, const CalibrationPrior& prior,
-                   bool training_only, int max_iterations = 20)
+                   bool training_only, int max_iterations = kMaxIterations,
+                   std::function<void()> on_iteration = {})
       : views_(views),
         prior_(prior),
         training_only_(training_only),
-        max_iterations_(max_iterations) {}
+        max_iterations_(max_iterations),
+        on_iteration_(std::move(on_iteration)) {}
+
+  static constexpr int kMaxIterations = 20;
 
   // The initial state: the poses of the views, the depths as measured.
   CalibrationState Begin(const CalibrationVector& theta) const;
@@ -51,6 +59,7 @@ class BundleAdjustment {
   const CalibrationPrior prior_;
   const bool training_only_;
   const int max_iterations_;
+  const std::function<void()> on_iteration_;
 };
 
 // The covariance of theta at a solution of a BundleAdjustment, with all else

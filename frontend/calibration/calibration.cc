@@ -59,11 +59,12 @@ struct CalibrationSteps {
   const OdometrySettings& odometry;
   const CalibrationSettings& settings;
   const int threads;
+  const FreeParts found_earlier;
+  const std::function<void()> on_iteration;
 
   CalibrationData data = {};
   CalibrationVector undone = CalibrationVector::Zero();  // in depths of `data`
   CalibrationPrior prior = {};
-  FreeParts earlier = {};              // determined in earlier passes
   CalibrationVector start = {};        // theta of the first camera
   CalibrationViews views_before = {};  // with depths as first looked up
   CalibrationState before = {};        // the solution with the first camera
@@ -74,10 +75,13 @@ struct CalibrationSteps {
   CalibrationResult result = {};
 
   // The problem without the held-out pairs.
-  BundleAdjustment Training() const { return {data.views, prior, true}; }
+  BundleAdjustment Training(
+      int max_iterations = BundleAdjustment::kMaxIterations) const {
+    return {data.views, prior, true, max_iterations, on_iteration};
+  }
 
   void Collect(const Trajectory& path, const CalibrationScale& scale,
-               const EarlierPasses& passes) {
+               const RgbdCamera& known) {
     result.camera = result.found = first;
     data = CollectCalibrationData(map, path, odometry, settings.max_views,
                                   threads);
@@ -88,8 +92,7 @@ struct CalibrationSteps {
     result.landmarks = static_cast<int>(data.views.landmarks.size());
     result.views = static_cast<int>(data.views.views.size());
     start = ThetaOf(map.camera);
-    prior.mean = ThetaBetween(first, passes.first);
-    earlier = passes.determined;
+    prior.mean = ThetaBetween(first, known);
     const CalibrationVector values = CameraValues(first, first);
     asked = FreeParameters(settings.fix, !data.views.distances.empty(),
                            map.camera.lens_model);
@@ -143,11 +146,12 @@ struct CalibrationSteps {
   // compensate each other, or something other than the camera.
   void ResetUnneeded() {
     // Errors may exceed the scatter of pairs as much as those of the halves.
-    const double spread = std::clamp(
-        SpreadOfHalves(SplitHalfConsistency(data.views, after, needed, prior)),
-        1.0, kMaxSpread);
+    const double spread =
+        std::clamp(SpreadOfHalves(SplitHalfConsistency(
+                       data.views, after, needed, prior, on_iteration)),
+                   1.0, kMaxSpread);
     constexpr int kNearby = 5;  // iterations; few, as the start is a solution
-    const BundleAdjustment nearby(data.views, prior, true, kNearby);
+    const BundleAdjustment nearby = Training(kNearby);
     CalibrationState best = after;
     for (const auto& [begin, size] : kGroups) {
       FreeParts fewer = needed;
@@ -171,9 +175,10 @@ struct CalibrationSteps {
 
   // The difference of the halves shows how wide the error bars have to be.
   void CompareHalves() {
-    const FreeParts changed = needed | earlier;
+    const FreeParts changed = needed | found_earlier;
     if (changed.none()) return;
-    result.halves = SplitHalfConsistency(data.views, after, changed, prior);
+    result.halves =
+        SplitHalfConsistency(data.views, after, changed, prior, on_iteration);
     const double spread = SpreadOfHalves(result.halves);
     result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
     for (HalvesOfParameter& half : result.halves) {
@@ -215,7 +220,7 @@ struct CalibrationSteps {
     }
     std::vector<HalvesOfParameter> halves;
     for (const HalvesOfParameter& half : result.halves) {
-      if ((determined | earlier)[half.part]) halves.push_back(half);
+      if ((determined | found_earlier)[half.part]) halves.push_back(half);
     }
     result.halves = halves;
     SolveWithScales(Training(), determined, &after);
@@ -234,7 +239,8 @@ struct CalibrationSteps {
   }
 
   void SolveWithAllPairs() {
-    const BundleAdjustment all(data.views, prior, false);
+    const BundleAdjustment all(data.views, prior, false,
+                               BundleAdjustment::kMaxIterations, on_iteration);
     SolveWithScales(all, determined, &after);
     TakeParameters(all);
     result.displacement_px = DisplacementPx(data.views, after.theta - start);
@@ -259,20 +265,19 @@ struct CalibrationSteps {
 
 }  // namespace
 
-CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
-                            const RgbdCamera& first,
-                            const OdometrySettings& odometry,
-                            const CalibrationSettings& settings,
-                            const CalibrationScale& scale, int threads,
-                            const EarlierPasses* earlier) {
+CalibrationResult Calibrate(
+    const KeyframeMap& map, const Trajectory& path, const RgbdCamera& first,
+    const OdometrySettings& odometry, const CalibrationSettings& settings,
+    const CalibrationScale& scale, int threads, const RgbdCamera* known,
+    const FreeParts& found_earlier, const std::function<void()>& on_iteration) {
   RequireSound(settings.Check(), "calibration: ");
   OdometrySettings relative = odometry;
   // The spread of pixels is measured relative to what the frontend states.
   relative.features.feature_noise = 1.0;
-  CalibrationSteps steps{map, first, relative, settings, threads};
+  CalibrationSteps steps{map,     first,         relative,    settings,
+                         threads, found_earlier, on_iteration};
   CalibrationResult& result = steps.result;
-  steps.Collect(path, scale,
-                earlier != nullptr ? *earlier : EarlierPasses{first, {}});
+  steps.Collect(path, scale, known != nullptr ? *known : first);
   constexpr int kMinViews = 100;
   if (result.views < kMinViews) {
     result.reason = "the camera hardly moved: only " +

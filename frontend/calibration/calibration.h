@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -51,21 +52,21 @@ struct CalibrationSettings {
 // The rows of these settings.
 std::vector<Setting> SettingTable(CalibrationSettings* settings);
 
-// What earlier passes over the same recording know.
-struct EarlierPasses {
-  RgbdCamera first;      // of the first pass; priors are centred on it
-  FreeParts determined;  // parameters that they determined
-};
-
 // Calibrates a camera from the keyframes and keyframe pairs of its recording,
-// tracked with the camera `first`. `path`: see CollectCalibrationData.
-// `earlier` is null in the first pass. Throws InputError for invalid settings.
+// tracked with the camera `first`. `path`: see CollectCalibrationData. `known`
+// is the camera that the priors are centred on; null means `first`. In a
+// further pass over the same recording it is the camera of the first pass, and
+// `found_earlier` are the parameters that earlier passes determined.
+// `on_iteration` is called after each iteration of the solver; what it throws
+// ends the calibration. Throws InputError for invalid settings.
 CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const RgbdCamera& first,
                             const OdometrySettings& odometry,
                             const CalibrationSettings& settings,
                             const CalibrationScale& scale, int threads,
-                            const EarlierPasses* earlier = nullptr);
+                            const RgbdCamera* known = nullptr,
+                            const FreeParts& found_earlier = {},
+                            const std::function<void()>& on_iteration = {});
 
 // Which parameters are free: all but those that `fix` names (see
 // CalibrationSettings), depth_factor only if the scale is known, distortion

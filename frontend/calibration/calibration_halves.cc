@@ -67,7 +67,8 @@ double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves) {
 
 std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
-    const FreeParts& is_free, const CalibrationPrior& prior) {
+    const FreeParts& is_free, const CalibrationPrior& prior,
+    const std::function<void()>& on_iteration) {
   const int all = static_cast<int>(views.world_from_cam.size());
   // Smaller parts cannot be calibrated.
   constexpr int kMinKeyframes = 3;
@@ -80,7 +81,9 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
     Part& part = halves[half];
     part = PartOf(views, found, begin, end);
     if (part.views.views.size() < kMinViews) return {};
-    const BundleAdjustment problem(part.views, prior, false);
+    const BundleAdjustment problem(part.views, prior, false,
+                                   BundleAdjustment::kMaxIterations,
+                                   on_iteration);
     if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
     problem.MeasureScales(&part.state);
     const auto variances = problem.Variances(is_free, part.state);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -120,16 +121,21 @@ struct CalibrationResult {
     return determined;
   }
 
-  // Accepts the camera found, with its noise if that is plausible, unless there
-  // is a reason not to. Then `camera` is `first`.
+  // Takes the noise, if it is plausible, into the camera.
+  void UseNoise() {
+    if (noise.has_value() && noise->IsPlausible()) {
+      camera.depth_noise = noise->model;
+    }
+  }
+
+  // Accepts the camera found, with its noise, unless there is a reason not to.
+  // Then `camera` is `first`.
   void Conclude(const RgbdCamera& first, const std::string& why_not) {
     reason = why_not;
     is_accepted = why_not.empty();
     camera = is_accepted ? found : first;
     noise = is_accepted ? noise_found : noise_before;
-    if (is_accepted && noise.has_value() && noise->IsPlausible()) {
-      camera.depth_noise = noise->model;
-    }
+    if (is_accepted) UseNoise();
   }
 
   // Error of the motions of pairs against the ground truth (RMSE, m), with the
@@ -160,10 +166,12 @@ double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves);
 
 // Calibrates each half of a recording (in time) separately, starting from the
 // result for the whole one. A real error of the camera shows in both halves.
-// Empty if a half cannot determine the parameters.
+// Empty if a half cannot determine the parameters. `on_iteration`: see
+// BundleAdjustment.
 std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
-    const FreeParts& is_free, const CalibrationPrior& prior);
+    const FreeParts& is_free, const CalibrationPrior& prior,
+    const std::function<void()>& on_iteration = {});
 
 // Fits the noise of single depth pixels robustly to the scatter of depths at
 // landmarks; errors of feature positions do not matter. `old` is the previous

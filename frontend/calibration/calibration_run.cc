@@ -58,10 +58,12 @@ Trajectory SmoothPath(const std::vector<SlamFrame>& frames) {
 RecordingCalibration CalibrateRecording(
     const SequenceSettings& sequence, const OdometrySettings& odometry,
     const SlamSettings& slam, const CalibrationSettings& settings, int threads,
-    const std::function<void(int pass, int done, int all)>& on_frame) {
+    const std::function<void(int pass, int done, int all)>& on_frame,
+    const std::function<void(int pass, int done)>& on_iteration) {
   RequireSound(settings.Check(), "calibration: ");
   RecordingCalibration all;
-  EarlierPasses earlier;
+  RgbdCamera first;
+  FreeParts found_earlier;
   SequenceSettings part = sequence;
   OdometrySettings with_shutter = odometry;
   with_shutter.odometry.shutter = ShutterUse::kCamera;
@@ -87,7 +89,7 @@ RecordingCalibration CalibrateRecording(
     const int frames = static_cast<int>(opened.source->timestamps().size());
     const RgbdCamera camera = opened.source->camera();
     SequenceRun run(with_shutter, slam, camera, opened.inputs);
-    int done = 0;
+    int done = 0, iterations = 0;
     all.stopped = TrackAll(opened.source.get(), threads, {&run},
                            [&](const Frame& /*frame*/) {
                              if (on_frame) on_frame(pass, ++done, frames);
@@ -103,13 +105,15 @@ RecordingCalibration CalibrateRecording(
     const CalibrationResult result = Calibrate(
         run.slam()->Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
         settings, {truth, opened.inputs.motion_guess.get()}, threads,
-        pass > 1 ? &earlier : nullptr);
+        pass > 1 ? &first : nullptr, found_earlier, [&] {
+          if (on_iteration) on_iteration(pass, ++iterations);
+        });
     all.path = run.slam()->Path();
     if (pass == 1) {
-      earlier.first = camera;
+      first = camera;
       all.result = result;
     } else {
-      TakeUp(earlier.first, settings, result, &all.result);
+      TakeUp(first, settings, result, &all.result);
     }
     // A live camera cannot be read again.
     if (frames == 0 || pass >= settings.max_passes ||
@@ -117,7 +121,7 @@ RecordingCalibration CalibrateRecording(
       return all;
     }
     known = all.result.found;
-    earlier.determined = all.result.Determined();
+    found_earlier = all.result.Determined();
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace rgbd_pose {
 namespace {
 
@@ -17,6 +19,12 @@ TEST(ProgressBarTest, KnowsNoTimeLeftBeforeTheFirstItem) {
   const ProgressBar bar("testing", 3);
   EXPECT_EQ(bar.TimeLeft(0), "?");
   EXPECT_EQ(bar.TimeLeft(3), "0 s");
+}
+
+TEST(ProgressBarTest, CountsIfTheTotalIsUnknown) {
+  EXPECT_EQ(ProgressBar("tracking", 0).Text(50), "tracking 50");
+  EXPECT_EQ(ProgressBar("tracking", 2).Text(2),
+            "tracking [" + std::string(30, '#') + "] 2/2, 0 s left");
 }
 
 }  // namespace

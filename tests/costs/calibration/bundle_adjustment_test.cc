@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "core/util/quantile.h"
@@ -128,6 +129,25 @@ TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
     held.Solve(none, &beside);
     EXPECT_GT(world.CostOf(beside), cost) << side;
   }
+}
+
+TEST(BundleAdjustmentTest, ReportsIterationsAndPassesOnWhatTheReportThrows) {
+  const World world;
+  int iterations = 0;
+  const auto solve = [&](int stop) {
+    const BundleAdjustment problem(
+        world.views, {world.start, world.prior}, /*training_only=*/false,
+        BundleAdjustment::kMaxIterations, [&iterations, stop] {
+          if (++iterations == stop) throw std::runtime_error("interrupted");
+        });
+    CalibrationState state = problem.Begin(world.start);
+    problem.Solve(World::FreeFocal(), &state);
+  };
+  solve(/*stop=*/0);
+  EXPECT_GT(iterations, 2);
+  iterations = 0;
+  EXPECT_THROW(solve(/*stop=*/2), std::runtime_error);
+  EXPECT_EQ(iterations, 2);
 }
 
 TEST(BundleAdjustmentTest, TheFirstPoseStays) {
