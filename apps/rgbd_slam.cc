@@ -91,7 +91,7 @@ std::optional<RecordingCalibration> Calibrate(const ProgramSettings& settings,
   }
   RequireOutside("output", settings.output.output, settings.sequence.dataset);
   RunOutput(settings.output, *OpenSequence(settings.sequence).source,
-            settings.odometry.features.depth);
+            settings.odometry);
   RequireMapToSave(settings);
   OdometrySettings odometry = settings.odometry;
   odometry.odometry.max_flow_px =

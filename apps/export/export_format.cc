@@ -66,7 +66,7 @@ ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
   const std::unique_ptr<FrameSource> source = OpenRecording(run);
   const Camera& camera = source->camera().camera;
   const Undistorter undistorter(camera);
-  CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
+  CloudFusion cloud(FusionOf<FusionOptions>(source->camera(), run, options));
   const std::vector<int> views =
       ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
         cloud.Add(frame, run.trajectory[view].world_from_cam);

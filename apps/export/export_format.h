@@ -10,10 +10,10 @@
 #include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
 #include "core/util/locked_folder.h"
-#include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 #include "frontend/fusion/cloud_fusion.h"
 #include "frontend/settings/sequence.h"
+#include "frontend/settings/settings.h"
 
 namespace rgbd_pose {
 
@@ -28,7 +28,7 @@ struct FinishedRun {
 
   std::string folder;         // of its results
   SequenceSettings sequence;  // with which the recording was opened
-  DepthLookupOptions depth;   // of the run
+  OdometrySettings odometry;  // with which it was tracked
 
   // The poses of all frames that have one. Of each: the number of its frame (a
   // row of frames.csv) and its segment. Segments have unrelated worlds.
@@ -114,13 +114,14 @@ ExportedViews WriteViewImages(const FinishedRun& run,
                               const std::filesystem::path& color_folder,
                               const std::filesystem::path& depth_folder = {});
 
-// Settings for fusing the views to a cloud or a mesh. Throws InputError.
+// Settings for fusing the views to a cloud or a mesh, with the depth noise that
+// tracking had. `camera`: of the recording. Throws InputError.
 template <typename Fusion>
-Fusion FusionOf(const Camera& camera, const FinishedRun& run,
+Fusion FusionOf(const RgbdCamera& camera, const FinishedRun& run,
                 const ExportOptions& options, Fusion fusion = {}) {
-  fusion.camera = camera;
+  fusion.camera = camera.camera;
   fusion.voxel_size = options.voxel;
-  fusion.depth = run.depth;
+  fusion.depth = FeaturesFor(run.odometry, camera).depth;
   if (options.max_depth > 0.0) fusion.depth.max_depth = options.max_depth;
   RequireSound(fusion.Check(), "--voxel or --max_depth: ");
   return fusion;

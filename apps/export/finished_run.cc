@@ -86,9 +86,7 @@ FinishedRun::FinishedRun(const std::string& run_folder,
   }
   const nlohmann::json flags = ReadReportSettings(path / "config.flags");
   Apply(flags, SettingTable(&sequence));
-  OdometrySettings odometry;
   Apply(flags, SettingTable(&odometry));
-  depth = odometry.features.depth;
   if (!dataset.empty()) sequence.dataset = dataset;
   if (!camera.empty()) sequence.camera = camera;
 

@@ -53,8 +53,7 @@ void ShowInPage(const std::string& folder, const char* file,
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
   const std::unique_ptr<FrameSource> source = OpenRecording(run);
-  CloudFusion cloud(
-      FusionOf<FusionOptions>(source->camera().camera, run, options));
+  CloudFusion cloud(FusionOf<FusionOptions>(source->camera(), run, options));
   RequireCloudFile(options.output);
   ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
     cloud.Add(frame, run.trajectory[view].world_from_cam);
@@ -73,7 +72,7 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
   MeshFusionOptions settings;
   settings.threads = options.threads;
   if (options.max_depth > 0.0) settings.max_depth = options.max_depth;
-  MeshFusion fusion(FusionOf(source->camera().camera, run, options, settings));
+  MeshFusion fusion(FusionOf(source->camera(), run, options, settings));
   const std::vector<int> views =
       ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
         fusion.Add(frame, run.trajectory[view].world_from_cam);

@@ -149,13 +149,6 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   return result;
 }
 
-// Matches have no camera that could state their noise.
-OdometrySettings EstimateDefaults() {
-  OdometrySettings settings;
-  settings.features.depth.noise = *FindNamed(DepthNoiseModels(), "khoshelham");
-  return settings;
-}
-
 // The rows that concern only matches.
 std::vector<Setting> EstimateTable(OdometrySettings* settings) {
   std::vector<Setting> rows;
@@ -276,7 +269,7 @@ void BindFunction(py::module_* module, const char* name,
       start = RigidFromArray(initial_guess, "initial_guess");
     }
     const std::optional<MotionPrior> prior = PriorFrom(prior_object);
-    OdometrySettings settings = EstimateDefaults();
+    OdometrySettings settings;
     SetFromKeywords(name, keywords, EstimateTable(&settings));
     settings.estimator.options.threads = threads;
     if (threads > kMaxThreads) {
@@ -284,18 +277,18 @@ void BindFunction(py::module_* module, const char* name,
                        std::to_string(kMaxThreads));
     }
     Estimator estimator = MakeEstimator(settings.estimator);
-    const Camera seen_by = camera == nullptr ? Camera() : camera->camera;
+    const RgbdCamera seen_by = camera == nullptr ? RgbdCamera() : *camera;
 
     const ReleasedGil no_gil;
     const RowMatches matches =
-        MakeMatches(seen_by, to_observation, prev, cur, normals, sigma_px,
-                    settings.features.depth.noise);
+        MakeMatches(seen_by.camera, to_observation, prev, cur, normals,
+                    sigma_px, NoiseFor(settings, seen_by));
     if (guess != nullptr) start = guess->find(matches.matches).value_or(start);
     return MakeResult(estimator.Estimate(matches.matches, start,
                                          prior.has_value() ? &*prior : nullptr),
                       matches, prev.size());
   };
-  OdometrySettings settings = EstimateDefaults();
+  OdometrySettings settings;
   DefineWithSettings(module, name, estimate, EstimateTable(&settings), doc,
                      py::arg(prev_name), py::arg(cur_name), camera_argument,
                      py::kw_only(), py::arg("initial_guess") = "identity",
@@ -316,7 +309,8 @@ points_prev, points_cur: (N, 3) x y z in camera axes (m; x right, y down, z
     forward); row i of both is match i. float64 and float32 of any strides are
     read without a copy. Rows that are not finite or have z <= 0 are ignored and
     get the weight 0.
-camera: determines, with sigma_px, the lateral noise; None: fx = fy = 525.
+camera: determines, with sigma_px, the lateral noise, and the noise of depth if
+    it states one (depth_noise "camera"); None: fx = fy = 525.
 initial_guess: where the solver starts: "identity", "ransac", "clique", or a
     (4, 4) cur_from_prev.
 sigma_px: standard deviation of u and of v in each frame (px).

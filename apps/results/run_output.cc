@@ -73,12 +73,14 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
 }
 
 RunOutput::RunOutput(const RunOutputSettings& settings,
-                     const FrameSource& source, const DepthLookupOptions& depth)
+                     const FrameSource& source,
+                     const OdometrySettings& odometry)
     : source_(source),
       drawn_("debug_images", settings.debug_images),
       folder_(settings.output) {
   const MeshFusionOptions fusion = {
-      {source.camera().camera, settings.voxel, depth}};
+      {source.camera().camera, settings.voxel,
+       FeaturesFor(odometry, source.camera()).depth}};
   RequireSound(settings.save_mesh.empty() ? fusion.FusionOptions::Check()
                                           : fusion.Check(),
                "--voxel or --max_depth: ");

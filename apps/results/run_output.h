@@ -29,9 +29,10 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings);
 class RunOutput {
  public:
   // Creates the output folder before the run. Throws InputError if this fails
-  // or for invalid options. The source must outlive this object.
+  // or for invalid options, also those of the odometry for clouds and meshes.
+  // The source must outlive this object.
   RunOutput(const RunOutputSettings& settings, const FrameSource& source,
-            const DepthLookupOptions& depth);
+            const OdometrySettings& odometry);
 
   // Warns if --debug_images names a frame that a recording of so many frames
   // does not have.

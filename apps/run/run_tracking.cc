@@ -141,7 +141,7 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   }
   RequireOutside("output", folder, dataset);
   FrameSource& source = *sequence->source;
-  RunOutput output(settings.output, source, settings.odometry.features.depth);
+  RunOutput output(settings.output, source, settings.odometry);
   const size_t known_frames = source.timestamps().size();
   if (known_frames > 0) output.WarnOfMissingImages(known_frames);
   LiveView view(dataset, settings.view, source.camera().camera, *run);

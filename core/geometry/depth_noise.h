@@ -47,7 +47,6 @@ struct DepthNoiseModel {
 };
 
 // All depth noise models, for FindNamed:
-//   camera      that of the camera (RgbdCamera); khoshelham if it has none
 //   kinect      0.0008 + 0.0029 z^2, Kinect v1 where features are; neighbours
 //               err alike (rgbd_calibrate with real recordings)
 //   khoshelham  1.425e-3 z^2, Kinect v1 (Khoshelham & Elberink 2012)
@@ -56,8 +55,9 @@ struct DepthNoiseModel {
 //   constant    5 mm, for unknown sensors
 inline const std::vector<DepthNoiseModel>& DepthNoiseModels() {
   static const auto& models = *new std::vector<DepthNoiseModel>{
-      {"camera", 0.0, 1.425e-3},     {"kinect", 0.0008, 0.0029, 0.0, 0.95},
-      {"khoshelham", 0.0, 1.425e-3}, {"nguyen", 0.0012, 0.0019, 0.4},
+      {"kinect", 0.0008, 0.0029, 0.0, 0.95},
+      {"khoshelham", 0.0, 1.425e-3},
+      {"nguyen", 0.0012, 0.0019, 0.4},
       {"constant", 0.005},
   };
   return models;

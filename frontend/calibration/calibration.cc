@@ -56,7 +56,7 @@ struct CalibrationSteps {
   // As given to Calibrate.
   const KeyframeMap& map;
   const RgbdCamera& first;
-  const OdometrySettings& odometry;
+  const FrontendOptions& features;  // for this camera
   const CalibrationSettings& settings;
   const int threads;
   const FreeParts found_earlier;
@@ -83,7 +83,7 @@ struct CalibrationSteps {
   void Collect(const Trajectory& path, const CalibrationScale& scale,
                const RgbdCamera& known) {
     result.camera = result.found = first;
-    data = CollectCalibrationData(map, path, odometry, settings.max_views,
+    data = CollectCalibrationData(map, path, features, settings.max_views,
                                   threads);
     result.scale_from =
         AddKnownDistances(path, settings.known_length, scale, &data);
@@ -112,7 +112,7 @@ struct CalibrationSteps {
     Training().MeasureScales(&before);
     SolveWithScales(Training(), FreeParts{}, &before);
     result.noise = result.noise_before =
-        FitDepthNoise(views_before, before, odometry.features.depth.noise);
+        FitDepthNoise(views_before, before, features.depth.noise);
   }
 
   // Higher lens coefficients are free only if held-out pairs gain enough.
@@ -136,8 +136,8 @@ struct CalibrationSteps {
   void LookUpDisplacedDepths(int max_rounds) {
     for (int i = 0; i < max_rounds && IsDisplaced(after.theta - undone); ++i) {
       undone = after.theta;
-      LookUpDepthsAgain(map, ApplyCalibration(first, undone).camera, odometry,
-                        undone, threads, &data);
+      LookUpDepthsAgain(map, ApplyCalibration(first, undone).camera,
+                        features.depth, undone, threads, &data);
       SolveWithScales(Training(), needed, &after);
     }
   }
@@ -255,8 +255,7 @@ struct CalibrationSteps {
     std::string why_not = WhyNoBetter(first, settings, result);
     result.is_better = why_not.empty();
     if (result.is_better) {
-      result.noise_found =
-          FitDepthNoise(data.views, after, odometry.features.depth.noise);
+      result.noise_found = FitDepthNoise(data.views, after, features.depth.noise);
       why_not = WhyUnchecked(settings, result);
     }
     result.Conclude(first, why_not);
@@ -271,10 +270,10 @@ CalibrationResult Calibrate(
     const CalibrationScale& scale, int threads, const RgbdCamera* known,
     const FreeParts& found_earlier, const std::function<void()>& on_iteration) {
   RequireSound(settings.Check(), "calibration: ");
-  OdometrySettings relative = odometry;
+  FrontendOptions features = FeaturesFor(odometry, first);
   // The spread of pixels is measured relative to what the frontend states.
-  relative.features.feature_noise = 1.0;
-  CalibrationSteps steps{map,     first,         relative,    settings,
+  features.feature_noise = 1.0;
+  CalibrationSteps steps{map,     first,         features,    settings,
                          threads, found_earlier, on_iteration};
   CalibrationResult& result = steps.result;
   steps.Collect(path, scale, known != nullptr ? *known : first);

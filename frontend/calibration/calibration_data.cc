@@ -196,8 +196,7 @@ std::vector<bool> HeldOut(int num_keyframes,
 // The landmarks of each keyframe, from up to `max_features` features.
 std::vector<std::vector<SeenLandmark>> FindLandmarks(
     const KeyframeMap& map, const CalibrationData& chosen,
-    const OdometrySettings& settings, int max_features, int threads) {
-  FrontendOptions options = settings.features;
+    FrontendOptions options, int max_features, int threads) {
   options.camera = map.camera;
   options.max_features = max_features;
   const int num_keyframes = static_cast<int>(chosen.in_map.size());
@@ -251,7 +250,7 @@ void AddLandmarks(const std::vector<std::vector<SeenLandmark>>& found,
 
 CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
-                                       const OdometrySettings& settings,
+                                       const FrontendOptions& features,
                                        int max_views, int threads) {
   CalibrationData data;
   data.in_map = ChosenKeyframes(map);
@@ -281,10 +280,10 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
   constexpr double kFoundAgain = 0.2;
   const double in_each = max_views / (kFoundAgain * 2.0 *
                                       std::max<double>(1.0, data.pairs.size()));
-  const int features =
+  const int max_features =
       static_cast<int>(std::clamp(in_each, kFewestFeatures, kMostFeatures));
-  AddLandmarks(FindLandmarks(map, data, settings, features, threads), max_views,
-               &data.views);
+  AddLandmarks(FindLandmarks(map, data, features, max_features, threads),
+               max_views, &data.views);
   return data;
 }
 

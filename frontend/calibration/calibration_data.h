@@ -6,7 +6,7 @@
 
 #include "core/evaluation/trajectory.h"
 #include "costs/calibration/calibration_views.h"
-#include "frontend/settings/settings.h"
+#include "frontend/features/frontend.h"
 #include "frontend/slam/keyframe_map.h"
 
 namespace rgbd_pose {
@@ -28,7 +28,7 @@ struct CalibrationData {
 // computed. `max_views` is the approximate number of landmark views.
 CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
-                                       const OdometrySettings& settings,
+                                       const FrontendOptions& features,
                                        int max_views, int threads);
 
 // Other sources of the camera's position; null: not available.
@@ -57,7 +57,7 @@ double DisplacementPx(const CalibrationViews& views,
 // in the images of the keyframes and looks up all depths again, as a large
 // displacement is not linear. `camera` has the current estimate of the lens.
 void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
-                       const OdometrySettings& settings,
+                       const DepthLookupOptions& options,
                        const CalibrationVector& theta, int threads,
                        CalibrationData* data);
 

@@ -69,10 +69,7 @@ RecordingCalibration CalibrateRecording(
   with_shutter.odometry.shutter = ShutterUse::kCamera;
   with_shutter.odometry.max_time_shift = 1.0;  // see CalibrationOdometry
   // The same for all cameras and passes: scatter is measured relative to it.
-  DepthNoiseModel& noise = with_shutter.features.depth.noise;
-  if (noise.name == "camera") {
-    noise = *FindNamed(DepthNoiseModels(), "khoshelham");
-  }
+  with_shutter.depth_noise = NoiseFor(odometry, {});
   if (part.frames.empty()) {
     part.frames =
         Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);

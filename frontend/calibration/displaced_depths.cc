@@ -118,10 +118,9 @@ double DisplacementPx(const CalibrationViews& views,
 }
 
 void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
-                       const OdometrySettings& settings,
+                       const DepthLookupOptions& options,
                        const CalibrationVector& theta, int threads,
                        CalibrationData* data) {
-  const DepthLookupOptions& options = settings.features.depth;
   const int num_keyframes = static_cast<int>(data->in_map.size());
   // By keyframe: its own landmarks, and its views of other landmarks.
   std::vector<std::vector<DepthPixel*>> pixels(num_keyframes);

@@ -169,12 +169,12 @@ DepthCorrection ReadDepthCorrection(const YamlSection& file) {
   return errors;
 }
 
-std::optional<DepthNoiseModel> ReadDepthNoise(const YamlSection& file) {
+std::optional<DepthNoiseModel> ReadDepthNoise(const std::string& path,
+                                              const YamlSection& file) {
   constexpr char kKey[] = "depth_noise";
   if (!file.Has(kKey)) return std::nullopt;
   const std::vector<double> values = file.Numbers(kKey, {4});
-  DepthNoiseModel noise = {"camera", values[0], values[1], values[2],
-                           values[3]};
+  DepthNoiseModel noise = {path, values[0], values[1], values[2], values[3]};
   if (const std::string error = noise.Check(); !error.empty()) {
     file.Fail(kKey, "(constant, quadratic, centre, mean_share): " + error);
   }
@@ -207,7 +207,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   const std::optional<double> depth_scale = ReadDepthScale(file);
   camera.depth_correction = ReadDepthCorrection(file);
   ReadShutters(file, &camera);
-  camera.depth_noise = ReadDepthNoise(file);
+  camera.depth_noise = ReadDepthNoise(path, file);
   CameraSetup result(camera);
   result.depth_scale = depth_scale;
   if (!remark.empty()) result.remark = path + ": " + remark;

@@ -18,8 +18,8 @@ struct DepthSample {
 
 // Which depths are used, and how uncertain they are.
 struct DepthLookupOptions {
-  // Noise of single pixels.
-  DepthNoiseModel noise = *FindNamed(DepthNoiseModels(), "camera");
+  // Noise of single pixels; the default is that of an unknown camera.
+  DepthNoiseModel noise = *FindNamed(DepthNoiseModels(), "khoshelham");
 
   double min_depth = 0.3;  // m
   double max_depth = 8.0;  // m

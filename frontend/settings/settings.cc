@@ -88,9 +88,21 @@ NamedSetting GuessByName(TrackerOptions* tracking, OdometryOptions* odometry) {
           }};
 }
 
-NamedSetting DepthNoiseByName(DepthNoiseModel* model) {
-  return {[=] { return model->name; },
-          [=](const std::string& name) { *model = ResolveDepthNoise(name); }};
+// The name for no model: that of the camera.
+constexpr char kOfCamera[] = "camera";
+
+std::vector<std::string> DepthNoiseNames() {
+  std::vector<std::string> names = NamesOf(DepthNoiseModels());
+  names.insert(names.begin(), kOfCamera);
+  return names;
+}
+
+NamedSetting DepthNoiseByName(std::optional<DepthNoiseModel>* model) {
+  return {[=] { return model->has_value() ? (*model)->name : kOfCamera; },
+          [=](const std::string& name) {
+            model->reset();
+            if (name != kOfCamera) *model = ResolveDepthNoise(name);
+          }};
 }
 
 DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
@@ -113,15 +125,21 @@ Estimator MakeEstimator(const EstimatorSettings& settings) {
 
 DepthNoiseModel NoiseFor(const OdometrySettings& settings,
                          const RgbdCamera& camera) {
-  const DepthNoiseModel& chosen = settings.features.depth.noise;
-  return chosen.name == "camera" ? camera.depth_noise.value_or(chosen) : chosen;
+  if (settings.depth_noise.has_value()) return *settings.depth_noise;
+  return camera.depth_noise.value_or(DepthLookupOptions().noise);
+}
+
+FrontendOptions FeaturesFor(const OdometrySettings& settings,
+                            const RgbdCamera& camera) {
+  FrontendOptions features = settings.features;
+  features.camera = camera.camera;
+  features.depth.noise = NoiseFor(settings, camera);
+  return features;
 }
 
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                                      const RgbdCamera& camera) {
-  FrontendOptions features = settings.features;
-  features.camera = camera.camera;
-  features.depth.noise = NoiseFor(settings, camera);
+  const FrontendOptions features = FeaturesFor(settings, camera);
   DirectSettings direct = settings.direct;
   direct.points.min_depth = features.depth.min_depth;
   direct.points.max_depth = features.depth.max_depth;
@@ -179,7 +197,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
       {"depth_noise", kEstimationGroup,
        "depth noise: a model, or a file written by rgbd_calibrate; camera: "
        "that of the camera file or preset, khoshelham if it has none",
-       DepthNoiseByName(&features->depth.noise), NamesOf(DepthNoiseModels())},
+       DepthNoiseByName(&settings->depth_noise), DepthNoiseNames()},
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),
        NamesOf(kAssemblies)},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,16 +36,25 @@ struct DirectSettings {
 struct OdometrySettings {
   EstimatorSettings estimator;     // estimates motion from matches
   std::string frontend = "patch";  // source of the matches
-  FrontendOptions features;        // without the camera
+  FrontendOptions features;        // without the camera and its depth noise
   std::string tracker = "hybrid";  // tracking method
   TrackerOptions tracking;         // validation of the estimates
   DirectSettings direct;           // estimates motion from pixels
   OdometryOptions odometry;        // keyframes, lost frames
+
+  // Noise of depth; nothing: that of the camera (see NoiseFor).
+  std::optional<DepthNoiseModel> depth_noise;
 };
 
-// The depth noise of the settings; for "camera", that of the camera if known.
+// The depth noise of the settings, or else that of the camera, or else that of
+// an unknown camera.
 DepthNoiseModel NoiseFor(const OdometrySettings& settings,
                          const RgbdCamera& camera);
+
+// `settings.features` with the camera and its depth noise (NoiseFor) filled in:
+// what reads the depths of a recording needs these, not the settings alone.
+FrontendOptions FeaturesFor(const OdometrySettings& settings,
+                            const RgbdCamera& camera);
 
 // Create an estimator, tracker or odometry with these settings. Throw
 // InputError for unknown names and invalid values.

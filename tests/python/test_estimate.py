@@ -234,3 +234,18 @@ def test_pieces_are_passed_on():
     ):
         other = rgbd_pose.estimate_motion(prev, cur, CAMERA, **pieces)
         assert (other.cur_from_prev != default.cur_from_prev).any(), pieces
+
+
+def test_depth_noise_is_that_of_the_camera_unless_one_is_chosen():
+    prev = random_points(300)
+    cur = move(motion(), prev)
+    camera = rgbd_pose.Camera.load("tum_fr1")  # states kinect
+    covariances = [
+        rgbd_pose.estimate_motion(prev, cur, camera, **noise).covariance
+        for noise in ({}, {"depth_noise": "kinect"}, {"depth_noise": "khoshelham"})
+    ]
+    np.testing.assert_array_equal(covariances[0], covariances[1])
+    assert (covariances[0] != covariances[2]).any()
+    estimate = rgbd_pose.estimate_motion(prev, cur, CAMERA)  # states none
+    other = rgbd_pose.estimate_motion(prev, cur, CAMERA, depth_noise="khoshelham")
+    np.testing.assert_array_equal(estimate.covariance, other.covariance)

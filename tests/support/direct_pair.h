@@ -25,7 +25,8 @@ struct DirectFrame {
   void Build() {
     pyramid = SmoothPyramid(PreparedFrame(frame)).levels;
     const auto id = view.id;
-    view = ViewFrame(frame, pyramid, camera, DepthNoiseModels()[0]);
+    view = ViewFrame(frame, pyramid, camera,
+                     *FindNamed(DepthNoiseModels(), "khoshelham"));
     view.id = id;
   }
 

@@ -144,7 +144,7 @@ def estimate_motion(
     min_inlier_share: float = 0.2,
     max_scale: float = 5.0,
     max_standard_deviation: float = 0.5,
-    depth_noise: str = "khoshelham",
+    depth_noise: str = "camera",
     assembly: str = "compressed",
 ) -> MotionEstimate: ...
 def estimate_motion_pixels(
@@ -166,7 +166,7 @@ def estimate_motion_pixels(
     min_inlier_share: float = 0.2,
     max_scale: float = 5.0,
     max_standard_deviation: float = 0.5,
-    depth_noise: str = "khoshelham",
+    depth_noise: str = "camera",
     assembly: str = "compressed",
 ) -> MotionEstimate: ...
 

@@ -62,7 +62,7 @@ class RunTrackingTest : public testing::Test {
     SequenceRun run(settings, source.camera());
     RunOutputSettings files;
     files.output = folder_ / "run";
-    RunOutput output(files, source, settings.features.depth);
+    RunOutput output(files, source, settings);
     LiveView view("", {}, source.camera().camera, run);
     std::string stopped = TrackSource(&source, 1, &run, &output, &view);
     frames_ = static_cast<int>(run.frames().size());

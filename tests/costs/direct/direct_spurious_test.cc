@@ -21,7 +21,8 @@ DirectFrame NoisyWall(uint32_t seed) {
   const Camera camera = SmallImages().camera.camera;
   std::mt19937 random(seed);
   std::normal_distribution<double> noise;
-  const double sigma = DepthNoiseModels()[0].sigma(kWall);
+  const double sigma =
+      FindNamed(DepthNoiseModels(), "khoshelham")->sigma(kWall);
   Frame frame;
   frame.gray.create(camera.height, camera.width, CV_8U);
   frame.depth.create(camera.height, camera.width, CV_16U);

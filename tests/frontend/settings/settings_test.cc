@@ -86,8 +86,8 @@ TEST(NoiseForTest, IsThatOfTheCameraUnlessOneIsChosen) {
   EXPECT_EQ(NoiseFor(settings, {}).sigma(2.0),
             FindNamed(DepthNoiseModels(), "khoshelham")->sigma(2.0));
   EXPECT_EQ(MakeTracker(settings, kinect)->images().depth.noise.name, "kinect");
-  settings.features.depth.noise = *FindNamed(DepthNoiseModels(), "nguyen");
-  EXPECT_EQ(NoiseFor(settings, kinect).name, "nguyen");
+  settings.depth_noise = *FindNamed(DepthNoiseModels(), "nguyen");
+  EXPECT_EQ(FeaturesFor(settings, kinect).depth.noise.name, "nguyen");
 }
 
 TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
