@@ -4,6 +4,7 @@
 
 #include "rgbd_pose/costs/cost_factory.h"
 #include "rgbd_pose/frontend/features/point_frontend.h"
+#include "rgbd_pose/frontend/settings/settings.h"
 #include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
 #include "rgbd_pose/frontend/tracking/feature_tracker.h"
 #include "rgbd_pose/frontend/tracking/odometry.h"
@@ -22,7 +23,7 @@ struct Flow final : rgbd_pose::PointFrontend {
 
 int main() {
   const rgbd_pose::SyntheticDataset room({"room", "pan_tilt", 60});  // or yours
-  const rgbd_pose::FrontendOptions options{room.camera().camera};
+  const auto options = rgbd_pose::FeaturesFor({}, room.camera());
   rgbd_pose::Odometry odometry(
       {}, std::make_unique<rgbd_pose::FeatureTracker>(
               std::make_unique<Flow>(options),

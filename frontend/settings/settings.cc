@@ -138,20 +138,23 @@ FrontendOptions FeaturesFor(const OdometrySettings& settings,
 }
 
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
-                                     const RgbdCamera& camera) {
+                                     const RgbdCamera& camera,
+                                     std::optional<Estimator> own) {
   const FrontendOptions features = FeaturesFor(settings, camera);
   DirectSettings direct = settings.direct;
   direct.points.min_depth = features.depth.min_depth;
   direct.points.max_depth = features.depth.max_depth;
-  return MakeTracker(settings.tracker,
-                     {settings.tracking, features, settings.frontend,
-                      MakeEstimator(settings.estimator),
-                      MakeDirectEstimators(settings.estimator, direct)});
+  return MakeTracker(
+      own.has_value() ? "features" : settings.tracker,
+      {settings.tracking, features, settings.frontend,
+       own.has_value() ? *std::move(own) : MakeEstimator(settings.estimator),
+       MakeDirectEstimators(settings.estimator, direct)});
 }
 
 Odometry MakeOdometry(const OdometrySettings& settings,
-                      const RgbdCamera& camera) {
-  return Odometry(settings.odometry, MakeTracker(settings, camera));
+                      const RgbdCamera& camera, std::optional<Estimator> own) {
+  return Odometry(settings.odometry,
+                  MakeTracker(settings, camera, std::move(own)));
 }
 
 std::vector<Setting> SettingTable(OdometrySettings* settings) {

@@ -58,11 +58,18 @@ FrontendOptions FeaturesFor(const OdometrySettings& settings,
 
 // Create an estimator, tracker or odometry with these settings. Throw
 // InputError for unknown names and invalid values.
+//
+// `own`: estimates each motion from matches, instead of `settings.estimator`,
+// and thus with any cost. Pixels then give only the start, as with the tracker
+// "features", whatever `settings.tracker` is: in a sum with pixels the cost of
+// the settings would decide as well.
 Estimator MakeEstimator(const EstimatorSettings& settings);
-std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
-                                     const RgbdCamera& camera);
+std::unique_ptr<Tracker> MakeTracker(
+    const OdometrySettings& settings, const RgbdCamera& camera,
+    std::optional<Estimator> own = std::nullopt);
 Odometry MakeOdometry(const OdometrySettings& settings,
-                      const RgbdCamera& camera);
+                      const RgbdCamera& camera,
+                      std::optional<Estimator> own = std::nullopt);
 
 // The group of the settings that concern only matches.
 inline constexpr char kEstimationGroup[] = "Estimation";

@@ -74,6 +74,7 @@ check() {
 readonly examples=$work/examples/build
 check "$examples/estimate_motion" '^ok, 160 of 200 matches .* 0\.000 mm$'
 check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
+says '^back at the start within 0\.[0-9]+ mm$' own_cost
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
 check "$examples/map_loop" '^[1-9][0-9]* keyframes, .* within 0\.[0-9]+ mm$'

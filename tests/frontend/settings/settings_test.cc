@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "frontend/simulation/synthetic_dataset.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
@@ -88,6 +89,26 @@ TEST(NoiseForTest, IsThatOfTheCameraUnlessOneIsChosen) {
   EXPECT_EQ(MakeTracker(settings, kinect)->images().depth.noise.name, "kinect");
   settings.depth_noise = *FindNamed(DepthNoiseModels(), "nguyen");
   EXPECT_EQ(FeaturesFor(settings, kinect).depth.noise.name, "nguyen");
+}
+
+// The position (m) of the last of a few frames.
+Eigen::Vector3d LastPosition(Odometry odometry) {
+  const SyntheticDataset room({"room", "pan_tilt", 4});
+  for (int i = 0; i < room.size(); ++i) odometry.Track(room.Read(i));
+  return odometry.WorldFromCam().translation;
+}
+
+TEST(MakeOdometryTest, AnEstimatorOfOnesOwnDeterminesTheMotion) {
+  const RgbdCamera camera = SyntheticDataset({"room", "pan_tilt", 1}).camera();
+  OdometrySettings huber;
+  huber.estimator.loss = "huber";
+  const Eigen::Vector3d refined = LastPosition(MakeOdometry(huber, camera));
+  huber.tracker = "features";
+  const Eigen::Vector3d by_name = LastPosition(MakeOdometry(huber, camera));
+  EXPECT_NE(by_name, refined);
+  EXPECT_EQ(
+      LastPosition(MakeOdometry({}, camera, MakeEstimator(huber.estimator))),
+      by_name);
 }
 
 TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
