@@ -10,6 +10,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -24,19 +25,34 @@ def version():
     return re.search(r"project\(rgbd_pose VERSION ([\d.]+)", text).group(1)
 
 
+def configure(folder):
+    """Runs CMake. Of a failure only what it says of errors is told."""
+    if shutil.which("cmake") is None:
+        sys.exit("rgbd_pose: cmake is missing (docs/python.md)")
+    run = subprocess.run(
+        ["cmake", "-S", str(SOURCES), "-B", folder]
+        + ["-DCMAKE_BUILD_TYPE=Release", "-DRGBD_POSE_BUILD_TESTS=OFF"]
+        + ["-DRGBD_POSE_BUILD_BENCHMARKS=OFF"]
+        + ["-DRGBD_POSE_BUILD_PYTHON=ON"]
+        + [f"-DPython_EXECUTABLE={sys.executable}"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    if run.returncode == 0:
+        return
+    # The place of an error, then its text, indented.
+    errors = re.findall(r"^CMake Error at .*\n((?:  .*\n|\n)*)", run.stdout, re.M)
+    lines = [" ".join(error.split()) for error in errors]
+    sys.exit("\n".join(lines) or run.stdout)
+
+
 def build_package(prefix):
     """Builds the module; returns the folder of the package below prefix."""
     folder = os.environ.get("RGBD_POSE_BUILD_DIR")
     if not folder:
         folder = str(SOURCES / "build-python")
-        subprocess.run(
-            ["cmake", "-S", str(SOURCES), "-B", folder]
-            + ["-DCMAKE_BUILD_TYPE=Release", "-DRGBD_POSE_BUILD_TESTS=OFF"]
-            + ["-DRGBD_POSE_BUILD_BENCHMARKS=OFF"]
-            + ["-DRGBD_POSE_BUILD_PYTHON=ON"]
-            + [f"-DPython_EXECUTABLE={sys.executable}"],
-            check=True,
-        )
+        configure(folder)
     jobs = str(os.cpu_count() or 1)
     subprocess.run(
         ["cmake", "--build", folder, "--target", "_rgbd_pose", "-j", jobs],

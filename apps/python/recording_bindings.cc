@@ -17,6 +17,7 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_range.h"
@@ -44,12 +45,15 @@ std::unique_ptr<Dataset> OpenTumDataset(const py::object& folder,
   return OpenTum(options);
 }
 
+// Python's index of a frame, which may count from the end, from 0.
+int IndexAmong(int frames, int index) {
+  if (index < 0) index += frames;
+  if (index >= 0 && index < frames) return index;
+  throw py::index_error("there are " + std::to_string(frames) + " frames");
+}
+
 Frame ReadFrame(const Dataset& dataset, int index) {
-  if (index < 0) index += dataset.size();
-  if (index < 0 || index >= dataset.size()) {
-    throw py::index_error("the dataset has " + std::to_string(dataset.size()) +
-                          " frames");
-  }
+  index = IndexAmong(dataset.size(), index);
   const ReleasedGil no_gil;
   return dataset.Read(index);
 }
@@ -69,12 +73,47 @@ class Recording {
     return source_;
   }
 
+  // Frame `index` from 0, by a reading of its own: forward from the last one
+  // if that was earlier. Call it without the GIL.
+  Frame Read(int index) {
+    std::optional<RgbdFrame> frame;
+    std::shared_ptr<FrameSource> source;
+    {
+      const std::lock_guard<std::mutex> lock(*mutex_);
+      if (picked_ == nullptr || index < next_) {
+        picked_ = open_();
+        next_ = 0;
+      }
+      for (source = picked_; next_ <= index; ++next_) frame = source->Next();
+    }
+    if (!frame.has_value()) {
+      throw InputError("the recording ends before frame " +
+                       std::to_string(index));
+    }
+    return frame->read();
+  }
+
  private:
   std::function<std::shared_ptr<FrameSource>()> open_;
   std::shared_ptr<FrameSource> source_;
   std::shared_ptr<std::mutex> mutex_ = std::make_shared<std::mutex>();
   bool is_used_ = false;
+  std::shared_ptr<FrameSource> picked_;  // null: no frame was picked
+  int next_ = 0;                         // number of the next frame of picked_
 };
+
+std::vector<double> TimesOf(const Recording& recording) {
+  const std::lock_guard<std::mutex> lock(*recording.mutex());
+  return recording.source().timestamps();
+}
+
+int LengthOf(const Recording& recording) {
+  const size_t frames = TimesOf(recording).size();
+  if (frames > 0) return static_cast<int>(frames);
+  throw py::type_error(
+      "the number of frames of this recording is not known in advance; loop "
+      "over it");
+}
 
 Recording OpenRecording(const py::object& path, const py::object& camera,
                         const std::string& source, const std::string& frames,
@@ -123,7 +162,13 @@ void BindFrame(py::module_* module) {
   property("gray", &ArrayOf<uint8_t, &Frame::gray>, "(height, width) uint8");
   property("depth", &ArrayOf<uint16_t, &Frame::depth>,
            "(height, width) uint16, raw units; 0 and 65535: none");
-  frame.def(Pickled<Frame>());
+  frame
+      .def("__repr__",
+           [](const Frame& self) {
+             return Format("Frame(%d at %.6f s, %d x %d)", self.index,
+                           self.timestamp, self.gray.cols, self.gray.rows);
+           })
+      .def(Pickled<Frame>());
 }
 
 void BindTumDataset(py::module_* module) {
@@ -154,7 +199,8 @@ void BindAnyRecording(py::module_* module) {
   py::class_<Recording> recording(*module, "Recording", R"(
 A recording of any kind that the programs read: `for frame in recording` gives
 one Frame after the other; each is decoded on access, with the GIL released.
-Each loop reads the recording again.
+Each loop reads the recording again. If the frames are known in advance (not
+those of bags), len(recording) is their number and recording[i] reads one.
 
 path: a folder or a file.
 camera: a Camera, a preset or a calibration file; None: the camera stored in the
@@ -187,16 +233,24 @@ Raises InputError for unreadable input.)");
         });
     return py::module_::import("builtins").attr("iter")(next, py::none());
   });
+  recording.def("__len__", &LengthOf);
+  // Not by the length, which may be unknown.
+  recording.def("__bool__", [](const Recording&) { return true; });
+  recording.def(
+      "__getitem__",
+      [](Recording* self, int index) {
+        index = IndexAmong(LengthOf(*self), index);
+        const ReleasedGil no_gil;
+        return self->Read(index);
+      },
+      py::arg("index"));
   const auto property = PropertiesOf(&recording);
   property(
       "camera", [](const Recording& self) { return self.source().camera(); },
       "camera of all frames");
   property(
       "timestamps",
-      [](const Recording& self) {
-        const std::lock_guard<std::mutex> lock(*self.mutex());
-        return py::array(py::cast(self.source().timestamps()));
-      },
+      [](const Recording& self) { return py::array(py::cast(TimesOf(self))); },
       "(N,) of all frames, s; empty if they are not known in advance");
   recording.def(
       "ground_truth",

@@ -55,6 +55,13 @@ cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
 
 }  // namespace
 
+void WarnInPython(const std::string& text) {
+  if (text.empty()) return;
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), /*stack_level=*/1) != 0) {
+    throw py::error_already_set();  // the user wants errors
+  }
+}
+
 Frame FrameFromArrays(const py::object& image, const py::object& depth,
                       const RgbdCamera& camera) {
   Frame frame;
@@ -80,13 +87,22 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   const int height = camera.camera.height, width = camera.camera.width;
   const NumberArray metres(array, "depth", {height, width});
   frame.depth.create(height, width, CV_16UC1);
+  int used = 0, too_far = 0;
   for (int y = 0; y < height; ++y) {
     auto* to = frame.depth.ptr<uint16_t>(y);
     for (int x = 0; x < width; ++x) {
       const double raw = std::round(metres(y, x) * kUnitsPerMetre);
       const bool is_valid = raw > 0.0 && raw < Frame::kNoDepth;  // NaN is not
       to[x] = is_valid ? static_cast<uint16_t>(raw) : 0;
+      used += is_valid;
+      too_far += raw >= Frame::kNoDepth;
     }
+  }
+  if (too_far > used) {
+    WarnInPython(
+        "depth: most values are above 13 m and are not used; check the depth "
+        "scale: float32 is in metres, millimetres are uint16 with a camera of "
+        "depth_scale=1000");
   }
   return frame;
 }

@@ -18,15 +18,19 @@
 #include "core/geometry/camera.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
+#include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 #include "frontend/settings/settings.h"
 #include "frontend/slam/sequence_run.h"
 
 namespace rgbd_pose {
 
+// Warns in Python (UserWarning) unless the text is empty.
+void WarnInPython(const std::string& text);
+
 // Makes a frame with copies of the Python images (see Odometry.track):
-// frontends keep images, while camera drivers overwrite theirs. Throws
-// InputError for images of a wrong shape or type.
+// frontends keep images, while camera drivers overwrite theirs. Warns of depths
+// that cannot be metres. Throws InputError for images of a wrong shape or type.
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
 
@@ -35,6 +39,11 @@ Frame FrameFromArrays(const pybind11::object& image,
 class SharedRun {
  public:
   const RgbdCamera& camera() const { return camera_; }
+
+  bool HasFrames() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !run_.frames().empty();
+  }
 
   // The current poses of the frames that were not lost.
   Trajectory trajectory() {
@@ -102,16 +111,21 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
     type.def(py::init(make), signature.c_str(), py::arg("camera").none(false),
              py::arg("frontend") = OdometrySettings().frontend);
   }
-  const auto track = [](Type* self, const py::object& image,
-                        const py::object& depth,
-                        std::optional<double> timestamp,
-                        const py::object& motion_guess, double depth_delay) {
+  const auto has_frames = [](Type* self) {
+    const ReleasedGil no_gil;
+    return self->HasFrames();
+  };
+  const auto track = [=](Type* self, const py::object& image,
+                         const py::object& depth,
+                         std::optional<double> timestamp,
+                         const py::object& motion_guess, double depth_delay) {
     Frame frame = FrameFromArrays(image, depth, self->camera());
     frame.depth_delay = depth_delay;
     std::optional<Rigid3d> guess;
     if (!motion_guess.is_none()) {
       guess = RigidFromArray(motion_guess, "motion_guess");
     }
+    if (!has_frames(self)) WarnInPython(DepthScaleWarning(frame));
     const ReleasedGil no_gil;
     return self->Track(std::move(frame), timestamp,
                        guess.has_value() ? &*guess : nullptr);

@@ -10,6 +10,8 @@ def checksum(data):  # FNV-1a over the bytes and their number, 64 bits
     return f"{state:016x}"
 
 
+if len(sys.argv) != 2:
+    sys.exit("usage: read_map.py FOLDER")
 folder = pathlib.Path(sys.argv[1])
 text = (folder / "map.txt").read_bytes()
 above, last = text[:-26], text[-26:].decode()  # "checksum", 16 digits

@@ -131,7 +131,7 @@ bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step) {
 }
 
 std::string DepthScaleWarning(const Frame& frame) {
-  constexpr double kMinPlausible = 0.2;   // m
+  const double kMinPlausible = DepthLookupOptions().min_depth;
   constexpr double kMaxPlausible = 20.0;  // m
   std::vector<double> depths;
   depths.reserve(frame.depth.total());

@@ -54,8 +54,9 @@ double MaxSurfaceStep(double depth, const DepthNoiseModel& noise);
 bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step);
 
 // A warning of one line if the median depth of a frame is implausible for an
-// RGB-D camera (below 0.2 m or above 20 m), as caused by a wrong depth scale.
-// Otherwise empty, also if the frame has no depth.
+// RGB-D camera, as caused by a wrong depth scale: above 20 m, or below 0.3 m,
+// where depths are not used by default. Otherwise empty, also if the frame has
+// no depth.
 std::string DepthScaleWarning(const Frame& frame);
 
 }  // namespace rgbd_pose

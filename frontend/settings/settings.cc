@@ -173,7 +173,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &estimator->loss, MEstimatorNames()},
       {"scale", kEstimationGroup,
        "scale of the residuals: from the noise model (fixed) or estimated; for "
-       "the units of depth images see --depth_scale",
+       "the units of depth images see depth_scale",
        ScaleByName(&options->scale), NamesOf(ScaleEstimators())},
       {"robust_schedule", kEstimationGroup,
        "direct: losses have their final width from the start; gnc: they start "
@@ -181,7 +181,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        ByName(kRobustSchedules, "robust schedule", &options->schedule),
        NamesOf(kRobustSchedules)},
       {"gnc_factor", kEstimationGroup,
-       "factor by which each step of --robust_schedule=gnc narrows the losses",
+       "factor by which each step of robust_schedule=gnc narrows the losses",
        &options->gnc_factor},
       {"max_iterations", kEstimationGroup,
        "maximum number of solver iterations in the last stage",
@@ -257,11 +257,11 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "started",
        &odometry->new_segment_after},
       {"guess_sigma_rotation", kTracking,
-       "standard deviation (rad) of the rotation of --motion_guess between two "
+       "standard deviation (rad) of the rotation of motion_guess between two "
        "frames",
        &odometry->guess_sigma_rotation},
       {"guess_sigma_translation", kTracking,
-       "standard deviation (m) of the translation of --motion_guess between "
+       "standard deviation (m) of the translation of motion_guess between "
        "two frames",
        &odometry->guess_sigma_translation},
       {"min_inliers", kTracking, "a frame with fewer inliers is lost",
@@ -284,11 +284,11 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &odometry->max_flow_px},
       {"prior_sigma_rotation", kTracking,
        "standard deviation (rad) of the rotation between two frames, for "
-       "--cost=...+motion_prior",
+       "cost=...+motion_prior",
        &tracking->prior_sigma_rotation},
       {"prior_sigma_translation", kTracking,
        "standard deviation (m) of the translation between two frames, for "
-       "--cost=...+motion_prior",
+       "cost=...+motion_prior",
        &tracking->prior_sigma_translation},
   };
 }

@@ -21,6 +21,29 @@ else
     tar -C "$folder/sources" -x
   sources=$folder/sources
 fi
+# What is missing is said in one line.
+mkdir "$folder/bin"
+cat >"$folder/bin/cmake" <<END
+#!/bin/sh
+exec $(command -v cmake) -DCMAKE_DISABLE_FIND_PACKAGE_pybind11=TRUE "\$@"
+END
+chmod +x "$folder/bin/cmake"
+if PATH="$folder/bin:$PATH" "$python" -B -c '
+import sys
+
+sys.path.insert(0, sys.argv[1])
+import python_wheel
+
+python_wheel.configure(sys.argv[2])' "$sources/cmake" "$folder/configured" \
+  >"$folder/said" 2>&1; then
+  echo "is configured without pybind11"
+  exit 1
+fi
+if [ "$(wc -l <"$folder/said")" -ne 1 ] ||
+  ! grep -q 'apt-get install pybind11-dev' "$folder/said"; then
+  cat "$folder/said"
+  exit 1
+fi
 # Uses the distribution's numpy.
 "$python" -m venv --system-site-packages "$folder/venv"
 pip="$folder/venv/bin/python -m pip --disable-pip-version-check"

@@ -1,6 +1,7 @@
 """Odometry, compared with the program rgbd_odometry, and with bad frames."""
 
 import csv
+import warnings
 
 import numpy as np
 import pytest
@@ -325,3 +326,30 @@ def test_dataset(dataset, sequence, camera, tmp_path):
         rgbd_pose.TumDataset(tmp_path / "none", camera)
     with pytest.raises(rgbd_pose.InputError, match="pairs.txt"):
         rgbd_pose.TumDataset(sequence, camera, tmp_path / "pairs.txt")
+
+
+@pytest.mark.parametrize("type", ["uint16", "float32"])
+def test_depth_in_wrong_units_is_said_once(type, dataset, camera):
+    camera = rgbd_pose.Camera(
+        camera.fx, camera.fy, camera.cx, camera.cy,
+        width=camera.width, height=camera.height,
+    )  # raw depth of 0.2 mm
+    odometry = rgbd_pose.Odometry(camera)
+    # Millimetres, of a scene nearer than 1.5 m.
+    scale = 1000 * 1.2 / np.median(dataset[0].depth)
+    frames = [(f.gray, (scale * f.depth).astype(type)) for f in list(dataset)[:2]]
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("default")
+        for gray, depth in frames:
+            odometry.track(gray, depth)
+    assert len(said) == 1 and said[0].filename == __file__
+    assert "check the depth scale" in str(said[0].message)
+
+
+def test_a_warning_as_an_error_changes_nothing(dataset, camera):
+    odometry = rgbd_pose.Odometry(camera)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(UserWarning, match="check the depth scale"):
+            odometry.track(dataset[0].gray, dataset[0].depth // 20)
+        assert odometry.track(dataset[0].gray, dataset[0].depth).index == 0

@@ -91,3 +91,23 @@ def test_refuses_what_it_cannot_read(sequence, tmp_path):
     ]:
         with pytest.raises(rgbd_pose.InputError, match=match):
             rgbd_pose.Recording(path, **settings)
+
+
+def test_has_a_length_and_frames_by_number(sequence, whole):
+    recording = rgbd_pose.Recording(sequence, frames="2-6:2")
+    assert len(recording) == 3
+    for i, frame in ((1, whole[4]), (-1, whole[6]), (0, whole[2])):
+        np.testing.assert_array_equal(recording[i].gray, frame.gray)
+        assert recording[i].timestamp == frame.timestamp
+    with pytest.raises(IndexError, match="there are 3 frames"):
+        recording[3]
+    # A loop is not disturbed.
+    loop = iter(recording)
+    assert next(loop).index == 0 and recording[2].index == 2
+    assert next(loop).index == 1
+
+
+def test_frames_say_what_they_are(whole):
+    frame = whole[3]
+    height, width = frame.gray.shape
+    assert repr(frame) == f"Frame(3 at {frame.timestamp:.6f} s, {width} x {height})"

@@ -3,6 +3,7 @@
 import ast
 import inspect
 import pathlib
+import re
 
 import pytest
 
@@ -107,6 +108,7 @@ def test_classes(name):
 def test_everything_is_documented(name):
     thing = getattr(rgbd_pose, name)
     assert thing.__doc__.strip()
+    assert not re.search(r"--[a-z]", thing.__doc__), "flags of programs"
     for member, value in vars(thing).items() if isinstance(thing, type) else ():
         if is_public(member):
             assert inspect.getdoc(value), member

@@ -24,7 +24,7 @@ Frame FrameWithMedian(uint16_t raw, double depth_scale) {
 
 TEST(DepthScaleTest, PlausibleDepthGivesNoWarning) {
   EXPECT_THAT(DepthScaleWarning(FrameWithMedian(10000, 5000)), IsEmpty());
-  EXPECT_THAT(DepthScaleWarning(FrameWithMedian(1000, 5000)), IsEmpty());
+  EXPECT_THAT(DepthScaleWarning(FrameWithMedian(1600, 5000)), IsEmpty());
   EXPECT_THAT(DepthScaleWarning(FrameWithMedian(20000, 1000)), IsEmpty());
 }
 
@@ -33,6 +33,9 @@ TEST(DepthScaleTest, WarnsBelowAndAboveWhatIsPlausible) {
   EXPECT_THAT(near, HasSubstr("frame 12"));
   EXPECT_THAT(near, HasSubstr("0.1 m"));
   EXPECT_THAT(near, HasSubstr("check the depth scale"));
+  // Millimetres of a scene 1.4 m away, all of them too near to be used.
+  EXPECT_THAT(DepthScaleWarning(FrameWithMedian(1400, 5000)),
+              HasSubstr("0.28 m"));
   const std::string far = DepthScaleWarning(FrameWithMedian(25000, 1000));
   EXPECT_THAT(far, HasSubstr("25 m"));
   EXPECT_THAT(far, HasSubstr("1000 raw units"));

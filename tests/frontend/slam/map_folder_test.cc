@@ -324,6 +324,9 @@ TEST_F(MapFolderTest, IsReadByAFewLinesOfPython) {
                 "edge from -3 to 4\n");
   WriteFileAtomically(map_ + "/" + NamesOf(map)[3], "x");
   EXPECT_NE(RunCommand(command, folder_).exit_code, 0);
+  EXPECT_EQ(
+      RunCommand("python3 -B " RGBD_POSE_EXAMPLES "/read_map.py", folder_).err,
+      "usage: read_map.py FOLDER\n");
 }
 
 // A FIFO blocks the reader of an image. Meanwhile another map is saved, which
