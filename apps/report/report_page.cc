@@ -1,10 +1,5 @@
 #include "apps/report/report_page.h"
 
-#include <filesystem>
-
-#include "apps/report/report_data.h"
-#include "core/util/text_file.h"
-
 namespace rgbd_pose {
 namespace {
 
@@ -61,16 +56,6 @@ std::string ReportPage(std::string_view kind, const nlohmann::json& data) {
                    {"%LICENSE%", std::string(assets.library_license)},
                    {"%LIBRARY%", InlineScript(assets.library)},
                    {"%SCRIPT%", InlineScript(assets.script)}});
-}
-
-std::string WriteReport(std::string_view kind, const std::string& folder) {
-  const nlohmann::json data = kind == "run"     ? RunReportData(folder)
-                              : kind == "batch" ? BatchReportData(folder)
-                                                : CompareReportData(folder);
-  if (data.contains("methods")) kind = "sweep";
-  std::string path = (std::filesystem::path(folder) / "report.html").string();
-  WriteFileAtomically(path, ReportPage(kind, data));
-  return path;
 }
 
 }  // namespace rgbd_pose
