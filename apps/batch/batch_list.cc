@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <regex>
+#include <string_view>
 
 #include "apps/batch/batch_plan.h"
 #include "apps/shell/program.h"
@@ -62,6 +63,28 @@ std::string CameraOf(const fs::path& folder, const std::string& named,
                    Join(CameraPresetNames()));
 }
 
+// The words of a line up to a comment, between spaces, tabs or commas. Those in
+// double quotes may contain these. `place` (file:line) is put before an error.
+std::vector<std::string> WordsOf(std::string_view line,
+                                 const std::string& place) {
+  constexpr std::string_view kSeparators = " \t,\r";
+  std::vector<std::string> words;
+  while (true) {
+    line.remove_prefix(
+        std::min(line.find_first_not_of(kSeparators), line.size()));
+    if (line.empty() || line[0] == '#') return words;
+    const bool is_quoted = line[0] == '"';
+    if (is_quoted) line.remove_prefix(1);
+    const size_t end = line.find_first_of(is_quoted ? "\"" : " \t,\r#");
+    if (is_quoted && end == std::string_view::npos) {
+      throw InputError(place + "a quotation mark is not closed");
+    }
+    words.emplace_back(line.substr(0, end));
+    line.remove_prefix(std::min(end, line.size()));
+    if (is_quoted) line.remove_prefix(1);
+  }
+}
+
 }  // namespace
 
 std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
@@ -70,12 +93,17 @@ std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
       (base / "").string(), std::regex(R"([*?[\\])"), R"(\$&)");
   std::vector<BatchSequence> sequences;
   std::map<std::string, int> lines;  // by sequence name
-  for (const auto& [number, words] : ReadTextTable(path)) {
-    const std::string place = path + ":" + std::to_string(number) + ": ";
+  const std::string text = ReadTextFile(path);
+  int number = 0;
+  for (const std::string& line : SplitText(WithoutByteOrderMark(text), '\n')) {
+    const std::string place = path + ":" + std::to_string(++number) + ": ";
+    const std::vector<std::string> words = WordsOf(line, place);
+    if (words.empty()) continue;
     if (words.size() > 2) {
       throw InputError(place +
                        "needs one or two columns (folder camera), has " +
-                       std::to_string(words.size()));
+                       std::to_string(words.size()) +
+                       "; put a path with spaces in quotation marks");
     }
     const std::string listed = WithHome(words[0]);
     const std::string camera = words.size() == 2 ? WithHome(words[1]) : "";

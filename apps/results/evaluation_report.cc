@@ -101,19 +101,12 @@ json RpeToJson(const RelativePoseError& error, double delta) {
 }
 
 std::string FormatConsistency(const RunConsistency& consistency) {
-  const TruthNoise& noise = consistency.truth_noise;
   const auto line = [](const std::string& what, const Consistency& c) {
     return Format("  %-30s%12d%12d%12.2f%12.2f\n", what.c_str(), c.count,
                   c.wrong, c.nees, c.median);
   };
-  const bool exact = noise.translation == 0.0 && noise.rotation == 0.0;
-  const std::string truth =
-      exact ? "assumed exact"
-            : Format("sigma %g mm, %g deg",
-                     noise.translation * kMillimetresPerMetre,
-                     noise.rotation * kDegreesPerRadian);
-  return Format("\nErrors and covariances (ground truth: %s)\n",
-                truth.c_str()) +
+  return "\nErrors and covariances (ground truth: " +
+         DescribeTruthNoise(consistency.truth_noise) + ")\n" +
          Format("%-32s%12s%12s%12s%12s\n", "", "evaluated", "wrong", "NEES",
                 "median") +
          line(Format("frames, of %d ok", consistency.ok),
@@ -198,6 +191,12 @@ json TruthAlignmentToJson(const EvaluationReport& report) {
 }
 
 }  // namespace
+
+std::string DescribeTruthNoise(const TruthNoise& noise) {
+  if (noise.translation == 0.0 && noise.rotation == 0.0) return "assumed exact";
+  return Format("sigma %g mm, %g deg", noise.translation * kMillimetresPerMetre,
+                noise.rotation * kDegreesPerRadian);
+}
 
 std::string FormatEvaluation(const EvaluationReport& report) {
   std::string text =

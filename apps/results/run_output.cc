@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "apps/results/evaluation_report.h"
+#include "apps/results/evaluation_summary.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/run_summary.h"
 #include "core/util/format.h"
@@ -159,7 +160,10 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   }
   if (results.evaluation.has_value()) {
     Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
-    text += FormatEvaluation(*results.evaluation);
+    text += FormatEvaluationSummary(*results.evaluation) +
+            "all errors  in the report and in " +
+            (folder_.staging_dir().parent_path() / "metrics.json").string() +
+            "\n";
     metrics["evaluation"] = EvaluationToJson(*results.evaluation);
     folder_.WriteFile("errors.csv",
                       FormatErrorsCsv(results.frames, results.trajectory,

@@ -160,6 +160,7 @@ void RequireMapFolder(const std::string& folder) {
 
 KeyframeMap LoadMap(const std::string& folder) {
   const std::string path = (fs::path(folder) / kIndex).string();
+  if (!PathExists(folder)) throw InputError(folder + ": no such folder");
   if (!PathExists(path)) {
     throw InputError(folder +
                      ": contains no map (no map.txt); choose a folder that a "

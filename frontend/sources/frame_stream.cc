@@ -62,7 +62,11 @@ std::optional<StreamedFrame> FrameStream::Next() {
     }
   }
   if (num_good_ > 0 || damaged_.empty()) return std::nullopt;
-  throw InputError(damaged_.front());
+  throw InputError(damaged_.front() + Hint());
+}
+
+std::string FrameStream::Hint() const {
+  return *max_damaged_ < 1.0 ? "; with max_damaged 1 (--max_damaged=1) it goes on" : "";
 }
 
 void FrameStream::End() {
@@ -87,7 +91,7 @@ void FrameStream::LeaveOut(const Result& result, const InputError& error) {
   stopped_ =
       Format("%zu of %zu frames cannot be read, the last: ", damaged_.size(),
              num_good_ + damaged_.size()) +
-      error.what();
+      error.what() + Hint();
 }
 
 std::optional<FrameStream::Result> FrameStream::Take() {

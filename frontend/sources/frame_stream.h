@@ -68,6 +68,8 @@ class FrameStream {
 
   // The result for the next frame; nothing after the last one.
   std::optional<Result> Take();
+  // How to go on in spite of damaged frames; empty if nothing more is allowed.
+  std::string Hint() const;
   // Leaves the frame out or ends the stream.
   void LeaveOut(const Result& result, const InputError& error);
 

@@ -127,8 +127,9 @@ CameraSetup ChooseCamera(const SourceOptions& options,
   RequireSound(options.Check());
   if (!options.camera.has_value() && !of_recording.has_value()) {
     throw InputError(options.path +
-                     ": contains no camera calibration; give a preset or a "
-                     "calibration file (camera)");
+                     ": contains no camera calibration; give one as camera "
+                     "(--camera): a calibration file or one of the presets " +
+                     Join(CameraPresetNames()));
   }
   CameraSetup chosen =
       options.camera.has_value() ? *options.camera : *of_recording;

@@ -216,9 +216,24 @@ function setting(data, name) {
   return '';
 }
 
+// The folder in which a run can be repeated: its paths are relative to it.
+function startFolder(data) {
+  return setting(data, 'output') === '.' ? 'in the folder of this page' :
+      'in the folder in which it was started';
+}
+
+// A command that repeats the run there.
+function repeated(data, program) {
+  const flags = setting(data, 'output') + '/config.flags';
+  const isPlain = /^[\w@%+=:,./-]+$/.test(flags);
+  const quoted = isPlain ? flags : "'" + flags.replaceAll("'", "'\\''") + "'";
+  return program + ' --flagfile=' + quoted;
+}
+
 function settings(data, program) {
-  const element = section('Settings', 'All flags of the run. To repeat it:');
-  element.append(make('pre', {}, program + ' --flagfile=config.flags'));
+  const element = section(
+      'Settings', `All flags of the run. To repeat it, ${startFolder(data)}:`);
+  element.append(make('pre', {}, repeated(data, program)));
   const columns = make('div', {class: 'columns'});
   for (const [title, flags] of data.settings) {
     columns.append(make('div', {}, make('h3', {}, title), table(

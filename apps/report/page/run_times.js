@@ -158,8 +158,8 @@ function jumpTable(data, element) {
       'Frames whose motion differs from the mean of the previous and the next motion ' +
       'by more than 10 mm and six times the median difference, largest first. With few ' +
       'matches or a large sigma, a jump is an error; if the camera was pushed, it is ' +
-      'not. To see the matches of the largest jumps:'),
-      make('pre', {}, `${data.metrics.program} --flagfile=config.flags ` +
+      `not. To see the matches of the largest jumps, ${startFolder(data)}:`),
+      make('pre', {}, repeated(data, data.metrics.program) + ' ' +
           `--debug_images=${jumps.slice(0, 3).map(jump => jump.frame).join(',')}`),
       table([{number: 'frame no.'}, {number: 'time (s)'}, {number: 'difference (mm)'},
              'tracked by', {number: 'inliers'}, {number: 'sigma'}, 'status'],

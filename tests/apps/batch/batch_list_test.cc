@@ -86,6 +86,21 @@ TEST_F(BatchListTest, ALinkGivesAnotherName) {
   EXPECT_EQ(sequences[1].name, "a2");
 }
 
+TEST_F(BatchListTest, PathsWithSpacesAreInQuotationMarks) {
+  folder_.Write("my data/a #1/camera.yaml", "");
+  folder_.Write("my camera.yaml", "");
+  const auto sequences = Read(
+      "\"../my data/a*\" # \"a comment\"\n"
+      "../data/b, \"../my camera.yaml\"\r\n");
+  ASSERT_EQ(sequences.size(), 2u);
+  EXPECT_EQ(sequences[0].folder, folder_ / "my data/a #1");
+  EXPECT_EQ(sequences[1].camera, folder_ / "my camera.yaml");
+  ExpectRefused("../data/a\n../my data/a b\n",
+                {"list.txt:2", "has 3; put a path with spaces in quotation"});
+  ExpectRefused("\"../my data/a b\n",
+                {"list.txt:1: a quotation mark is not closed"});
+}
+
 TEST_F(BatchListTest, BadLinesAreNamed) {
   ExpectRefused("# nothing\n", {"list.txt", "lists no sequences"});
   ExpectRefused("../data/a\n../data/d\n", {"list.txt:2", "data/d"});

@@ -249,7 +249,8 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
   EXPECT_EQ(Occurrences(browser.out, "further pairs"),
             1);  // only in the script
   EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from the odometry path"));
-  EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=config.flags"));
+  EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=" +
+                                     (folder_ / "run/config.flags")));
 
   write("{}");  // nothing to draw
   const RunResult empty = Browse("--window-size=1280,4000 --dump-dom");

@@ -266,7 +266,8 @@ TEST_F(NumberedDatasetTest, RefusesWhatCannotBeUsed) {
   const auto refuses = [this](const std::vector<std::string>& parts) {
     ExpectInputError([this] { OpenSource("auto", Options()); }, parts);
   };
-  refuses({folder_.path(), "contains no camera calibration", "preset"});
+  refuses({folder_.path(), "contains no camera calibration", "--camera",
+           "presets tum_fr1, tum_fr2"});
   ExpectInputError([this] { OpenSource("scannet", WithCamera()); },
                    {folder_.path(), "no colour images", "color/123.jpg"});
   const auto expect_bad_pose = [this](const std::string& text,
