@@ -40,6 +40,7 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
     const Trajectory* truth = sequence.GroundTruth();
     return truth == nullptr ? Trajectory() : *truth;
   };
+  writer.truth_noise = sequence.inputs.truth_noise;
   writer.max_damaged = sequence.inputs.max_damaged;
   const StopSignal signal;
   writer.stop = [&signal] { return signal.name(); };

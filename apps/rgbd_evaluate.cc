@@ -38,12 +38,12 @@ DEFINE_double(rpe_delta_metres, rgbd_pose::EvaluationOptions().rpe_delta_metres,
 DEFINE_string(rpe_frames, "1,6",
               "numbers of frames over which the median, 90 % and 99 % of the "
               "relative pose error are given, separated by commas");
-DEFINE_double(truth_sigma_metres, 0.0,
+DEFINE_double(truth_sigma_metres, -1.0,
               "standard deviation (m) of motions of the ground truth, used "
-              "when covariances are judged");
-DEFINE_double(truth_sigma_degrees, 0.0,
+              "when covariances are judged; -1: as its file says");
+DEFINE_double(truth_sigma_degrees, -1.0,
               "standard deviation (degrees) of rotations of the ground truth, "
-              "used when covariances are judged");
+              "used when covariances are judged; -1: as its file says");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
               "write the estimate, aligned to the ground truth, to this file "
@@ -78,13 +78,26 @@ std::vector<int> ParseFrames(const std::string& text) {
   return frames;
 }
 
+// The noise of the truth as its file says, unless flags say otherwise.
+TruthNoise NoiseOfTruth() {
+  TruthNoise noise = ReadTruthNoise(FLAGS_groundtruth);
+  const auto take = [&noise](double flag, double unit, double* sigma) {
+    if (flag == -1.0) return;
+    if (!(flag >= 0.0)) {
+      throw InputError("sigmas of the ground truth must not be negative");
+    }
+    *sigma = flag * unit;
+    noise.origin = "as the flags say";
+  };
+  take(FLAGS_truth_sigma_metres, 1.0, &noise.translation);
+  take(FLAGS_truth_sigma_degrees, kRadiansPerDegree, &noise.rotation);
+  return noise;
+}
+
 int Main() {
   const std::filesystem::path run = FLAGS_run;
   if (!FLAGS_run.empty() && !FLAGS_estimate.empty()) {
     throw InputError("--run contains a trajectory; leave out --estimate");
-  }
-  if (!(FLAGS_truth_sigma_metres >= 0.0 && FLAGS_truth_sigma_degrees >= 0.0)) {
-    throw InputError("sigmas of the ground truth must not be negative");
   }
   if (FLAGS_align != "rigid" && FLAGS_align != "none") {
     throw InputError("--align=" + FLAGS_align + " is neither rigid nor none");
@@ -97,6 +110,7 @@ int Main() {
       &remarks);
   const Trajectory truth = ReadTrajectory(FLAGS_groundtruth, &remarks);
   Warn(remarks);
+  const TruthNoise noise = NoiseOfTruth();
   EvaluationReport report =
       Evaluate(estimate, truth,
                {FLAGS_max_time_difference, FLAGS_rpe_delta_seconds,
@@ -104,9 +118,7 @@ int Main() {
                 FLAGS_align == "rigid"});
   if (!FLAGS_run.empty()) {
     report.consistency =
-        JudgeFrames(ReadFrames(run), truth,
-                    {FLAGS_truth_sigma_metres,
-                     FLAGS_truth_sigma_degrees * kRadiansPerDegree});
+        JudgeFrames(ReadFrames(run), truth, noise);
   }
   if (!FLAGS_aligned.empty()) {
     for (StampedPose& pose : estimate) {

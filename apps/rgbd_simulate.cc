@@ -121,6 +121,7 @@ int Main(const SimulateSettings& settings, const ProgramInfo& info) {
     ProgressBar bar("rendering", dataset.size());
     TumWriterOptions writer;
     writer.threads = AvailableCores();
+    writer.truth_noise = {0.0, 0.0, "rendered"};
     writer.progress = [&bar](int done) { bar.Update(done); };
     writer.stop = [&signal] { return signal.name(); };
     written = WriteTumSequence(&dataset, settings.output, writer);

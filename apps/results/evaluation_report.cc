@@ -106,7 +106,7 @@ std::string FormatConsistency(const RunConsistency& consistency) {
                   c.wrong, c.nees, c.median);
   };
   return "\nErrors and covariances (ground truth: " +
-         DescribeTruthNoise(consistency.truth_noise) + ")\n" +
+         consistency.truth_noise.InWords() + ")\n" +
          Format("%-32s%12s%12s%12s%12s\n", "", "evaluated", "wrong", "NEES",
                 "median") +
          line(Format("frames, of %d ok", consistency.ok),
@@ -192,12 +192,6 @@ json TruthAlignmentToJson(const EvaluationReport& report) {
 
 }  // namespace
 
-std::string DescribeTruthNoise(const TruthNoise& noise) {
-  if (noise.translation == 0.0 && noise.rotation == 0.0) return "assumed exact";
-  return Format("sigma %g mm, %g deg", noise.translation * kMillimetresPerMetre,
-                noise.rotation * kDegreesPerRadian);
-}
-
 std::string FormatEvaluation(const EvaluationReport& report) {
   std::string text =
       Format("%d of %d estimated poses have a ground truth within %g s;\n",
@@ -272,6 +266,7 @@ json EvaluationToJson(const EvaluationReport& report) {
         {"wrong_above_chi_square", kWrongChiSquare},
         {"truth_sigma_m", noise.translation},
         {"truth_sigma_deg", noise.rotation * kDegreesPerRadian},
+        {"truth_sigma_origin", noise.origin},
         {"ok", report.consistency->ok},
         {"ok_frames", ToJson(report.consistency->ok_frames)},
         {"edges", ToJson(report.consistency->edges)}};

@@ -11,9 +11,6 @@ namespace rgbd_pose {
 // measured and its unit. Errors without any pair of poses are "n/a".
 std::string FormatEvaluation(const EvaluationReport& report);
 
-// What was assumed on the errors of the truth: "sigma 2 mm, 0.2 deg".
-std::string DescribeTruthNoise(const TruthNoise& noise);
-
 // Formats the report as JSON. Keys end in their unit (_m, _s, _deg). Errors
 // without any pair of poses are null, with a count of 0; standard deviations of
 // undetermined values are infinite, which becomes null in a file.

@@ -46,7 +46,7 @@ std::string FormatEvaluationSummary(const EvaluationReport& report) {
     text +=
         Format("covariances of ok frames: %d of %d wrong, NEES %.2f (",
                frames.wrong, frames.count, frames.nees) +
-        "ground truth: " + DescribeTruthNoise(report.consistency->truth_noise) +
+        "ground truth: " + report.consistency->truth_noise.InWords() +
         ")\n";
   }
   return text;

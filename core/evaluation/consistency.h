@@ -3,15 +3,10 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
+#include "core/evaluation/truth_noise.h"
 #include "core/geometry/motion.h"
 
 namespace rgbd_pose {
-
-// Noise of true motions in each direction: 0 for rendered sequences.
-struct TruthNoise {
-  double translation = 0.0;  // sigma, m
-  double rotation = 0.0;     // sigma, rad
-};
 
 // Squared error of an edge, [omega C], in units of its covariance plus `noise`:
 // chi^2 with 6 degrees of freedom if the covariance is correct.

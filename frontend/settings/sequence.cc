@@ -1,6 +1,7 @@
 #include "frontend/settings/sequence.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "core/evaluation/association.h"
@@ -13,6 +14,8 @@
 
 namespace rgbd_pose {
 namespace {
+
+namespace fs = std::filesystem;
 
 SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
                         const RgbdCamera* camera) {
@@ -60,6 +63,16 @@ void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
     throw InputError(std::string(error.what()) +
                      "; use --groundtruth=none to run without it");
   }
+}
+
+// The noise of the truth that FindTruth finds.
+TruthNoise FindTruthNoise(const SequenceSettings& settings) {
+  const std::string file =
+      !settings.groundtruth.empty()
+          ? settings.groundtruth
+          : (fs::path(settings.dataset) / "groundtruth.txt").string();
+  return PathExists(file) ? ReadTruthNoise(file)
+                          : TruthNoiseByName(settings.dataset);
 }
 
 }  // namespace
@@ -156,7 +169,10 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
   const FrameRange range = ParseFrameRange(settings.frames);
   sequence.source = PartOf(OpenSource(settings.source, options), range);
   sequence.compares = settings.groundtruth != "none";
-  if (sequence.compares) FindTruth(settings, &sequence);
+  if (sequence.compares) {
+    FindTruth(settings, &sequence);
+    sequence.inputs.truth_noise = FindTruthNoise(settings);
+  }
   if (!settings.motion_guess.empty()) {
     Trajectory guess = ReadTrajectory(settings.motion_guess, &sequence.remarks);
     const std::vector<double> times = sequence.source->timestamps();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
+#include "core/evaluation/truth_noise.h"
 #include "frontend/settings/settings.h"
 #include "frontend/sources/frame_source.h"
 
@@ -34,6 +35,8 @@ struct RunInputs {
   std::shared_ptr<const Trajectory> motion_guess;
   // The share of frames that may be damaged, see FrameStream.
   double max_damaged = 0.05;
+  // Of the ground truth, as far as its file or the recording tells.
+  TruthNoise truth_noise = {};
 };
 
 // An open sequence.

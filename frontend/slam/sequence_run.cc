@@ -38,7 +38,7 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
       results_.evaluation->consistency =
-          JudgeFrames(results_.frames, *ground_truth);
+          JudgeFrames(results_.frames, *ground_truth, inputs_.truth_noise);
     } catch (const InputError& error) {
       results_.no_evaluation = error.what();
     }

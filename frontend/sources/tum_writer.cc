@@ -160,7 +160,7 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
       options.ground_truth ? options.ground_truth() : source->ground_truth();
   if (!ground_truth.empty()) {
     WriteFileAtomically((folder / "groundtruth.txt").string(),
-                        FormatTrajectory(ground_truth));
+                        FormatTruth(ground_truth, options.truth_noise));
   }
   return written;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
+#include "core/evaluation/truth_noise.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
@@ -15,6 +16,7 @@ struct TumWriterOptions {
   int threads = 2;  // that read frames; no effect on the files
   // Returns the true path; called after the last frame. Empty: the source's.
   std::function<Trajectory()> ground_truth;
+  TruthNoise truth_noise = {};  // of that path, for readers of the sequence
   // Called with the number of written frames, from one thread; may be empty.
   std::function<void(int done)> progress;
   // Asked after each frame: why to stop with the frames so far, such as the

@@ -87,6 +87,19 @@ function header(data) {
   }
 }
 
+// What is known of the errors of the ground truth.
+function truthNoise(consistency) {
+  const metres = consistency.truth_sigma_m, degrees = consistency.truth_sigma_deg;
+  const origin = consistency.truth_sigma_origin;
+  if (!origin) {
+    return 'assumed to be exact, since nothing else is known: if it was measured, ' +
+        'rgbd_evaluate takes its error (--truth_sigma_metres, --truth_sigma_degrees).';
+  }
+  if (!metres && !degrees) return `exact (${origin}).`;
+  return `taken with sigmas of ${digits(1000 * metres, 3)} mm and ` +
+      `${digits(degrees, 3)}° (${origin}).`;
+}
+
 function metrics(data) {
   const e = data.metrics.evaluation, run = data.metrics.run;
   const number = (value, count = 3) => ({number: digits(value, count)});
@@ -139,11 +152,7 @@ function metrics(data) {
           'wrong: their error exceeds five sigmas of their own covariance. Squared ' +
           `errors are on average ${frames.count ? digits(frames.nees, 3) : 'n/a'} times ` +
           'those that the covariances predict (NEES). The ground truth is ' +
-          (e.consistency.truth_sigma_m || e.consistency.truth_sigma_deg ?
-          `taken with sigmas of ${digits(e.consistency.truth_sigma_m * 1000, 3)} mm and ` +
-          `${digits(e.consistency.truth_sigma_deg, 3)}°.` :
-          'assumed to be exact: if it was measured, rgbd_evaluate takes its error ' +
-          '(--truth_sigma_metres, --truth_sigma_degrees).')));
+          truthNoise(e.consistency)));
     }
     element.append(make('h3', {}, 'Run'));
   }

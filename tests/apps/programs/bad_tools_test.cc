@@ -41,7 +41,7 @@ TEST_F(BadInputTest, Evaluate) {
            "--run contains a trajectory"},
           {"no run", same, "--estimate= --run={seq}/none", 2,
            "{seq}/none/trajectory.txt: cannot be opened"},
-          {"a truth better than exact", same, "--truth_sigma_degrees=-1", 2,
+          {"a truth better than exact", same, "--truth_sigma_degrees=-2", 2,
            "sigmas of the ground truth must not be negative"},
           {"missing", nullptr, "", 2, "{seq}/estimate.txt: cannot be opened"},
           {"the truth is missing", same, "--groundtruth={seq}/none.txt", 2,
