@@ -162,6 +162,7 @@ BatchSummary Summarise(const std::vector<BatchRun>& runs,
     row["repeat"] = run.repeat;
     row["status"] = end ? end->status : "missing";
     row["exit_code"] = end ? ordered_json(end->exit_code) : nullptr;
+    row["folder"] = run.Name();
     const json metrics = end ? ReadMetrics(folder.Complete(run)) : json();
     for (const auto& [column, place] : kFigures) {
       row[column] = FindFigure(metrics, place);
@@ -176,7 +177,7 @@ std::string FormatBatchCsv(const BatchSummary& summary) {
   for (const BatchSetting& setting : BatchSettings()) {
     text += std::string(",") + setting.column;
   }
-  text += ",repeat,status,exit_code";
+  text += ",repeat,status,exit_code,folder";
   for (const auto& figure : kFigures) text += std::string(",") + figure.name;
   text += "\n";
   for (const ordered_json& row : summary) {

@@ -95,6 +95,11 @@ json BatchReportData(const std::string& batch_folder) {
     const std::vector<double> numbers = table.Numbers(name);
     for (size_t i = 0; i < numbers.size(); ++i) rows[i][name] = numbers[i];
   }
+  const std::vector<std::string> runs = table.Words("folder");
+  for (size_t i = 0; i < runs.size(); ++i) {
+    const fs::path report = fs::path(runs[i]) / "report.html";
+    if (PathExists(folder / report)) rows[i]["report"] = report.string();
+  }
   return {{"name", folder.parent_path().filename().string()}, {"rows", rows}};
 }
 

@@ -100,12 +100,13 @@ function shorten(name) {
 function batchTable(data, varied) {
   const number = (value, factor, count = 3) => (
       {number: known(value) ? digits(value * factor, count) : '–'});
-  section('All runs').append(table(
+  section('All runs', data.rows.some(row => row.report)
+      ? 'A name leads to the report of its run.' : '').append(table(
       ['sequence', ...varied, 'part', {number: 'run'}, 'status',
        {number: 'tracked (%)'}, {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'},
        {number: 'RPE over 1 s (°)'}, {number: 'ms/frame'}],
       data.rows.map(row => [
-        {class: 'name', text: row.sequence}, ...varied.map(name => row[name]),
+        {class: 'name', text: row.sequence, link: row.report}, ...varied.map(name => row[name]),
         row.part || 'all', {number: String(row.repeat)}, row.status, number(row.tracked_share, 100),
         number(row.ate_rmse_m, 1000), number(row.rpe_seconds_translation_m, 1000),
         number(row.rpe_seconds_rotation_deg, 1), number(row.track_ms_median, 1),

@@ -24,11 +24,24 @@ function truthFromMap(data) {
   ];
 }
 
-// The two axes that are approximately horizontal if the first camera is level.
-function levelAxes(data) {
+// The two axes that are approximately horizontal if the first camera is level,
+// the one along which `points` extend farther first: it is drawn to the right.
+function levelAxes(data, points) {
   const down = downVector(data).map(Math.abs);
   const vertical = down.indexOf(Math.max(...down));
-  return [0, 1, 2].filter(k => k !== vertical);
+  const length = k => {
+    const all = points.map(point => point[k]);
+    return Math.max(...all) - Math.min(...all);
+  };
+  return [0, 1, 2].filter(k => k !== vertical).sort((a, b) => length(b) - length(a));
+}
+
+// The height (px) of a plot with equal scales whose ranges fill its width.
+function heightFor(element, xRange, yRange) {
+  const kTitles = 110, kLeast = 280, kMost = 760;
+  const ratio = Math.abs((yRange[1] - yRange[0]) / (xRange[1] - xRange[0]));
+  const height = kTitles + ratio * Math.max(element.clientWidth - 70, 200);
+  return Math.min(Math.max(height, kLeast), kMost);
 }
 
 function pointsOf(path) {
@@ -105,17 +118,21 @@ function map(data) {
           `last reason: ${slam.error || 'unknown'}. ` : '') +
       (mapSegments(slam) > 1 ? 'The relative poses of the segments are unknown. ' : '') +
       'Equal scales on both axes; a click on a name hides it.');
-  const move = truthFromMap(data), axes = levelAxes(data);
+  const move = truthFromMap(data);
+  const axes = levelAxes(data, slam.graph_keyframes.map(move));
   const before = data.odometry_path && pointsOf(data.odometry_path.before);
   const after = data.odometry_path && pointsOf(data.odometry_path.after);
   const traces = mapTraces(slam, before, after, move, axes);
   const all = letter => traces.flatMap(trace => trace[letter]);
   const [a, b] = axes.map(k => 'XYZ'[k]);
-  plot('map', 'tall', element, traces, {
-    xaxis: axis(a + ' (m)', {range: pathRange(all('x'), false)}),
-    yaxis: axis(b + ' (m)', {scaleanchor: 'x', range: pathRange(all('y'), false)}),
+  const xRange = pathRange(all('x'), false), yRange = pathRange(all('y'), false);
+  const div = plot('map', '', element, traces, {
+    height: heightFor(element, xRange, yRange),
+    xaxis: axis(a + ' (m)', {range: xRange}),
+    yaxis: axis(b + ' (m)', {scaleanchor: 'x', range: yRange}),
     hovermode: 'closest',
   });
+  div.style.height = '';
   if (!before) return;
   const unit = lengthUnit(largestDistance(before, after));
   element.append(make('p', {class: 'soft caption'},

@@ -2,6 +2,8 @@
 
 // The path of the camera: two 2D views and one 3D view.
 
+const TRUTH_COLOR = '#b9c2cb';
+
 // Splits the path into one trace per segment, with gaps where lost.
 function segmentTraces(data, axes, type, line) {
   const path = data.path, frames = data.frames;
@@ -30,9 +32,10 @@ function pathTraces(data, axes, type, line) {
   const letters = 'xyz'.split('').slice(0, axes.length);
   const traces = [];
   if (path.true_x) {
+    // A wide pale band, which is seen also where the estimate covers it.
     const truth = {type, mode: path.x.length === 1 ? 'markers' : 'lines',
                    name: 'ground truth', connectgaps: false,
-                   line: Object.assign({color: COLOR.black}, line),
+                   line: {color: TRUTH_COLOR, width: 4 * line.width},
                    marker: {color: COLOR.black, symbol: 'circle-open', size: 9},
                    customdata: data.frames.t,
                    hovertemplate: '%{customdata:.2f} s<extra>ground truth</extra>'};

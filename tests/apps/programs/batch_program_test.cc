@@ -175,16 +175,16 @@ TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   const std::string csv = Read("runs/summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "sequence,cost,loss,frontend,tracker,part,repeat,status,exit_code,"
-            "frames,ok,"
-            "degraded,lost,tracked_share,ate_rmse_m,rpe_seconds_translation_m,"
+            "folder,frames,ok,degraded,lost,tracked_share,ate_rmse_m,rpe_"
+            "seconds_translation_m,"
             "rpe_seconds_rotation_deg,final_translation_m,final_rotation_deg,"
             "track_ms_median,wall_seconds");
   EXPECT_THAT(Column("runs/summary.csv", 0),
               ElementsAre("xyz", "xyz", "xyz", "xyz", "pan_tilt", "pan_tilt",
                           "pan_tilt", "pan_tilt"));
-  EXPECT_THAT(
-      csv,
-      HasSubstr("\nxyz,bidirectional_point,huber,patch,hybrid,,1,ok,0,6,"));
+  EXPECT_THAT(csv,
+              HasSubstr("\nxyz,bidirectional_point,huber,patch,hybrid,,1,ok,0,"
+                        "xyz/bidirectional_point-huber-patch-hybrid-r1,6,"));
   EXPECT_EQ(nlohmann::json::parse(Read("runs/summary.json")).size(), 8u);
 
   const auto before = TimelessFiles(folder_ / "runs");

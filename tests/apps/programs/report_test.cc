@@ -152,15 +152,18 @@ TEST_F(ReportTest, WithoutGroundTruthThereAreNoErrors) {
 TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
   folder_.Write(
       "run/summary.csv",
-      "sequence,cost,loss,frontend,tracker,part,repeat,status,frames,"
+      "sequence,cost,loss,frontend,tracker,part,repeat,status,folder,frames,"
       "tracked_share,ate_rmse_m,rpe_seconds_translation_m,"
       "rpe_seconds_rotation_deg,track_ms_median\n"
-      "kitchen,point,huber,patch,hybrid,0-,1,ok,400,1,0.03,0.02,1.1,1.2\n"
-      "kitchen,point,huber,patch,hybrid,3-,1,ok,397,1,0.05,0.02,1.1,"
-      "1.2\n"
-      "kitchen,point,tukey,patch,hybrid,0-,1,ok,400,1,0.04,0.03,1.2,1.3\n"
-      "hall,point,huber,patch,hybrid,0-,1,ok,50,1,,,,1.2\n"
-      "hall,point,tukey,patch,hybrid,0-,1,failed,,,,,,\n");
+      "kitchen,point,huber,patch,hybrid,0-,1,ok,kitchen/"
+      "a-r1,400,1,0.03,0.02,1.1,1.2\n"
+      "kitchen,point,huber,patch,hybrid,3-,1,ok,kitchen/b-r1,397,1,0.05,0.02,"
+      "1.1,1.2\n"
+      "kitchen,point,tukey,patch,hybrid,0-,1,ok,kitchen/"
+      "c-r1,400,1,0.04,0.03,1.2,1.3\n"
+      "hall,point,huber,patch,hybrid,0-,1,ok,hall/a-r1,50,1,,,,1.2\n"
+      "hall,point,tukey,patch,hybrid,0-,1,failed,hall/c-r1,,,,,,\n");
+  folder_.Write("run/kitchen/b-r1/report.html", "");
   const RunResult report = Run(RGBD_REPORT " --batch=" + (folder_ / "run"));
   ASSERT_EQ(report.exit_code, 0) << report.err;
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
@@ -169,6 +172,8 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
   EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 4);
   EXPECT_EQ(Occurrences(browser.out, ">failed</td>"), 1);
+  EXPECT_EQ(Occurrences(browser.out, "<a href="), 1);  // to the only report
+  EXPECT_THAT(browser.out, HasSubstr("<a href=\"kitchen/b-r1/report.html\">"));
   EXPECT_THAT(browser.out, HasSubstr("40.0 (30.0 to 50.0)"));  // of two parts
 }
 
