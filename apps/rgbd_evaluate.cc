@@ -117,8 +117,7 @@ int Main() {
                 FLAGS_rpe_delta_metres, ParseFrames(FLAGS_rpe_frames),
                 FLAGS_align == "rigid"});
   if (!FLAGS_run.empty()) {
-    report.consistency =
-        JudgeFrames(ReadFrames(run), truth, noise);
+    report.consistency = JudgeFrames(ReadFrames(run), truth, noise);
   }
   if (!FLAGS_aligned.empty()) {
     for (StampedPose& pose : estimate) {

@@ -43,11 +43,10 @@ std::string FormatEvaluationSummary(const EvaluationReport& report) {
   }
   if (report.consistency.has_value()) {
     const Consistency& frames = report.consistency->ok_frames;
-    text +=
-        Format("covariances of ok frames: %d of %d wrong, NEES %.2f (",
-               frames.wrong, frames.count, frames.nees) +
-        "ground truth: " + report.consistency->truth_noise.InWords() +
-        ")\n";
+    text += Format("covariances of ok frames: %d of %d wrong, NEES %.2f (",
+                   frames.wrong, frames.count, frames.nees) +
+            "ground truth: " + report.consistency->truth_noise.InWords() +
+            ")\n";
   }
   return text;
 }

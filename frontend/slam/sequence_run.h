@@ -122,7 +122,6 @@ std::string TrackAll(FrameSource* source, int threads,
 
 // Judges the motions of tracked frames and their covariances against the truth.
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
-                           const Trajectory& truth,
-                           const TruthNoise& noise);
+                           const Trajectory& truth, const TruthNoise& noise);
 
 }  // namespace rgbd_pose

@@ -66,7 +66,9 @@ std::optional<StreamedFrame> FrameStream::Next() {
 }
 
 std::string FrameStream::Hint() const {
-  return *max_damaged_ < 1.0 ? "; with max_damaged 1 (--max_damaged=1) it goes on" : "";
+  return *max_damaged_ < 1.0
+             ? "; with max_damaged 1 (--max_damaged=1) it goes on"
+             : "";
 }
 
 void FrameStream::End() {

@@ -27,9 +27,9 @@ TEST_F(TruthNoiseTest, IsReadFromTheHeadOfTheFile) {
 }
 
 TEST_F(TruthNoiseTest, OfATumRecordingIsKnown) {
-  const TruthNoise noise =
-      Read("# ground truth trajectory\n"
-           "# file: 'rgbd_dataset_freiburg1_xyz.bag'\n1 0 0 0 0 0 0 1\n");
+  const TruthNoise noise = Read(
+      "# ground truth trajectory\n"
+      "# file: 'rgbd_dataset_freiburg1_xyz.bag'\n1 0 0 0 0 0 0 1\n");
   EXPECT_DOUBLE_EQ(noise.translation, 0.002);
   EXPECT_DOUBLE_EQ(noise.rotation, 0.2 * kRadiansPerDegree);
   // What the file says of itself is preferred.
@@ -57,9 +57,8 @@ TEST_F(TruthNoiseTest, IsWrittenAndReadBack) {
 }
 
 TEST_F(TruthNoiseTest, RefusesABadLine) {
-  for (const char* line :
-       {"0.002", "0.002 mm 0.2 deg", "0.002 m 0.2 rad", "x m 0.2 deg",
-        "-1 m 0.2 deg", "0.002 m nan deg"}) {
+  for (const char* line : {"0.002", "0.002 mm 0.2 deg", "0.002 m 0.2 rad",
+                           "x m 0.2 deg", "-1 m 0.2 deg", "0.002 m nan deg"}) {
     ExpectInputError(
         [&] { Read("# truth\n# truth_sigma: " + std::string(line) + "\n"); },
         {"groundtruth.txt:2"});
