@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <utility>
 
 #include "core/pose_graph/graph_problem.h"
+#include "core/pose_graph/spanning_tree.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
@@ -38,10 +41,19 @@ double FirstWidth(const GraphTerms& graph) {
   return std::clamp(std::sqrt(largest), 1.0, kWidest);
 }
 
+// Half the sum of squares under the losses, which are widened by `width`.
+double CostOf(const GraphTerms& graph, double width) {
+  double cost = 0.0;
+  GraphProblem(graph, width)
+      .problem()
+      ->Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return cost;
+}
+
 std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
-// The functions below return one line on why a graph cannot be solved, or an
-// empty text. Here: invalid values, or an edge that does not connect two poses.
+// One line on invalid values, or an edge that does not connect two poses; empty
+// if there is nothing wrong.
 std::string FindBadInput(const GraphTerms& graph) {
   for (size_t i = 0; i < graph.poses.size(); ++i) {
     if (graph.poses[i].world_from_cam.IsFinite()) continue;
@@ -66,31 +78,78 @@ std::string FindBadInput(const GraphTerms& graph) {
   return "";
 }
 
-// A pose with no connection to a fixed pose. Groups connected poses by the
-// smallest number among them (union-find); one more number stands for the world
-// of all fixed ones.
-std::string FindUnanchoredPose(const GraphTerms& graph) {
-  const int world = static_cast<int>(graph.poses.size());
-  std::vector<int> root(world + 1);
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int pose) {
-    while (root[pose] != pose) pose = root[pose] = root[root[pose]];
-    return pose;
-  };
-  const auto join = [&](int a, int b) {
-    a = find(a);
-    b = find(b);
-    root[std::max(a, b)] = std::min(a, b);
-  };
-  for (const GraphTerms::Edge& edge : graph.edges) join(edge.ref, edge.cur);
-  for (int i = 0; i < world; ++i) {
-    if (graph.poses[i].is_fixed) join(i, world);
+// A solve from some start: its poses, which are valid if it is ok.
+struct Attempt {
+  GraphTerms graph;
+  GraphSolution solution;
+};
+
+// One solve with losses widened by `width`. Moves the poses of the attempt;
+// returns the largest change (rad and m), or NaN if the solver gave up.
+double Round(double width, int max_iterations, const PoseGraphOptions& options,
+             Attempt* attempt) {
+  GraphProblem problem(attempt->graph, width);
+  if (problem.is_empty()) return 0.0;
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = max_iterations;
+  solver.num_threads = options.threads;
+  solver.logging_type = ceres::SILENT;
+  // Steps of Gauss and Newton, damped only where one does not reduce the cost:
+  // any damping holds the long waves of a long path back.
+  solver.initial_trust_region_radius = 1e16;
+  // Ceres drops the step that makes it stop. Hence a round, which begins at
+  // x = 0, moves nothing if and only if its first step is within the tolerance,
+  // or changes the cost by no more than rounding.
+  solver.parameter_tolerance = std::sqrt(options.step_tolerance);
+  solver.function_tolerance = 1e-14;
+  solver.gradient_tolerance = 0.0;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, problem.problem(), &summary);
+  GraphSolution& solution = attempt->solution;
+  solution.iterations += summary.num_jacobian_evaluations;
+  solution.final_cost = summary.final_cost;
+  if (!summary.IsSolutionUsable()) {
+    solution.status = GraphStatus::kNotConverged;
+    solution.reason = "the solver failed: " + summary.message;
+    return std::nan("");
   }
-  for (int i = 0; i < world; ++i) {
-    if (find(i) == find(world)) continue;
-    return NameOf(i) + " is not connected to any fixed pose";
+  double moved = 0.0;
+  for (size_t i = 0; i < attempt->graph.poses.size(); ++i) {
+    if (attempt->graph.poses[i].is_fixed) continue;
+    const int pose = static_cast<int>(i);
+    moved = std::max(moved, problem.parameters(pose).lpNorm<Eigen::Infinity>());
+    attempt->graph.poses[i].world_from_cam = problem.WorldFromCam(pose);
   }
-  return "";
+  return moved;
+}
+
+// Solves with losses that are narrowed from a factor of `width` down to 1: from
+// the poses of the graph, or from those of its tree if they agree better.
+Attempt Minimise(const GraphTerms& graph, const std::vector<TreeNode>& tree,
+                 double width, const PoseGraphOptions& options) {
+  Attempt attempt{graph, {}};
+  attempt.graph.poses = PosesByTree(tree, graph);
+  if (!(CostOf(attempt.graph, width) < CostOf(graph, width))) {
+    attempt.graph.poses = graph.poses;
+  }
+  for (; width > 1.0 && attempt.solution.ok(); width /= kNarrowing) {
+    Round(width, kGraphIterationsPerEarlyStage, options, &attempt);
+  }
+  double moved = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < options.max_rounds && attempt.solution.ok() &&
+                      moved > options.step_tolerance;
+       ++round) {
+    moved = Round(1.0, kGraphIterationsPerRound, options, &attempt);
+  }
+  if (attempt.solution.ok() && moved > options.step_tolerance) {
+    attempt.solution.status = GraphStatus::kNotConverged;
+    attempt.solution.reason = "poses still moved by " + Format("%.2g", moved) +
+                              " (rad or m) in round " +
+                              std::to_string(options.max_rounds) +
+                              ", the last one";
+  }
+  return attempt;
 }
 
 }  // namespace
@@ -109,39 +168,6 @@ PoseGraph::PoseGraph(const PoseGraphOptions& options) : options_(options) {
   RequireSound(options.Check(), "pose graph: ");
 }
 
-double PoseGraph::Round(double width, int max_iterations,
-                        GraphSolution* solution) {
-  GraphProblem problem(graph_, width);
-  if (problem.is_empty()) return 0.0;
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = max_iterations;
-  options.num_threads = options_.threads;
-  options.logging_type = ceres::SILENT;
-  options.function_tolerance = 1e-9;
-  // The origin is close to the solution: no damping is needed at the start.
-  options.initial_trust_region_radius = 1e8;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, problem.problem(), &summary);
-  // The first entry is the start.
-  solution->iterations +=
-      std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  solution->final_cost = summary.final_cost;
-  if (!summary.IsSolutionUsable()) {
-    solution->status = GraphStatus::kNotConverged;
-    solution->reason = "the solver failed: " + summary.message;
-    return std::nan("");
-  }
-  double moved = 0.0;
-  for (size_t i = 0; i < graph_.poses.size(); ++i) {
-    if (graph_.poses[i].is_fixed) continue;
-    const int pose = static_cast<int>(i);
-    moved = std::max(moved, problem.parameters(pose).lpNorm<Eigen::Infinity>());
-    graph_.poses[i].world_from_cam = problem.WorldFromCam(pose);
-  }
-  return moved;
-}
-
 GraphSolution PoseGraph::Solve() {
   GraphSolution solution;
   const auto is_refused = [&](const std::string& reason, GraphStatus status) {
@@ -150,33 +176,39 @@ GraphSolution PoseGraph::Solve() {
     solution.reason = reason;
     return true;
   };
-  if (is_refused(FindBadInput(graph_), GraphStatus::kBadInput) ||
-      is_refused(FindUnanchoredPose(graph_), GraphStatus::kNotAnchored)) {
+  if (is_refused(FindBadInput(graph_), GraphStatus::kBadInput)) return solution;
+  const std::vector<TreeNode> tree =
+      SpanningTree(graph_, std::vector<bool>(graph_.edges.size(), true));
+  const int outside = FirstOutside(tree, graph_);
+  if (is_refused(outside < 0
+                     ? ""
+                     : NameOf(outside) + " is not connected to any fixed pose",
+                 GraphStatus::kNotAnchored)) {
     return solution;
   }
-  const std::vector<GraphTerms::Pose> before = graph_.poses;
-  GraphProblem(graph_, 1.0)
-      .problem()
-      ->Evaluate({}, &solution.initial_cost, nullptr, nullptr, nullptr);
-  solution.final_cost = solution.initial_cost;
-  if (options_.graduated) {
-    for (double width = FirstWidth(graph_); width > 1.0; width /= kNarrowing) {
-      if (std::isnan(Round(width, kGraphIterationsPerEarlyStage, &solution)))
-        break;
+  Attempt best = Minimise(graph_, tree, 1.0, options_);
+  const double width = FirstWidth(graph_);
+  if (options_.graduated && width > 1.0) {
+    Attempt other = Minimise(graph_, tree, width, options_);
+    const int iterations = best.solution.iterations + other.solution.iterations;
+    if (!best.solution.ok() ||
+        (other.solution.ok() &&
+         other.solution.final_cost < best.solution.final_cost)) {
+      best = std::move(other);
     }
+    best.solution.iterations = iterations;
   }
-  for (int round = 0; round < options_.max_rounds && solution.ok(); ++round) {
-    const double moved = Round(1.0, kGraphIterationsPerRound, &solution);
-    if (!(moved > options_.step_tolerance)) break;
-  }
+  solution = best.solution;
+  solution.initial_cost = CostOf(graph_, 1.0);
   if (solution.ok()) {
-    const int pose = GraphProblem(graph_, 1.0)
+    const int pose = GraphProblem(best.graph, 1.0)
                          .FindUndetermined(options_.max_standard_deviation);
     is_refused(pose < 0 ? "" : NameOf(pose) + " is not determined",
                GraphStatus::kSingular);
   }
-  if (!solution.ok()) {
-    graph_.poses = before;
+  if (solution.ok()) {
+    graph_.poses = std::move(best.graph.poses);
+  } else {
     solution.final_cost = solution.initial_cost;
   }
   return solution;

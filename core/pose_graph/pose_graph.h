@@ -33,14 +33,16 @@ struct GraphTerms {
 
 // How a graph is solved.
 struct PoseGraphOptions {
-  // Starts with losses so wide that all edges count, then narrows them step by
-  // step: for poses that may be far off. False: final widths at once.
+  // Solves a second time, with losses so wide at first that all edges count and
+  // narrowed step by step, and keeps what has the lower final cost: for poses
+  // that may be far off. False: final widths at once.
   bool graduated = false;
 
   // Maximum number of solves, each with the poses of the last one as origins.
+  // The last one needed moves nothing: that is how it is known to be the last.
   int max_rounds = 10;
 
-  // Stops when no pose moves by more than this (rad and m).
+  // Stops when a step of all poses together is shorter than this (rad and m).
   double step_tolerance = 1e-6;
 
   // A pose is not determined if some direction of it has a larger standard
@@ -60,7 +62,7 @@ enum class GraphStatus {
   kBadInput,      // a pose or edge is invalid
   kNotAnchored,   // some poses are not connected to a fixed pose
   kSingular,      // some pose is not determined
-  kNotConverged,  // the solver gave up; the poses are unchanged
+  kNotConverged,  // poses still moved in the end; they are unchanged
 };
 
 // The name printed by programs.
@@ -77,7 +79,7 @@ struct GraphSolution {
 
   double initial_cost = 0.0;  // with the final widths of the losses
   double final_cost = 0.0;    // the same at the poses after solving
-  int iterations = 0;         // of the solver, in all rounds
+  int iterations = 0;         // how often the graph was linearised
 
   // Whether the poses are the ones that agree best with the edges.
   bool ok() const { return status == GraphStatus::kOk; }
@@ -101,7 +103,9 @@ class PoseGraph {
   void AddEdge(const RelativePose& edge,
                const ceres::LossFunction* loss = nullptr);
 
-  // Optimises the poses that are not fixed. Ignores edges between fixed poses.
+  // Optimises the poses that are not fixed, from where they are or, if this
+  // costs less, from where the shortest paths of edges put them. Ignores edges
+  // between fixed poses.
   GraphSolution Solve();
 
   // The number of poses, fixed ones included.
@@ -124,10 +128,6 @@ class PoseGraph {
   double OvercountingFactor() const;
 
  private:
-  // One solve with losses widened by `width`. Returns the largest change of a
-  // pose (rad and m), or NaN if the solver gave up.
-  double Round(double width, int max_iterations, GraphSolution* solution);
-
   PoseGraphOptions options_;
   GraphTerms graph_;
 };

@@ -159,7 +159,6 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
                                             bool graduated) const {
   PoseGraphOptions options;
   options.graduated = graduated;
-  options.max_rounds = 3;
   options.step_tolerance = 1e-5;
   // Poses connected only by an uncertain motion must not make the solver fail.
   options.max_standard_deviation = 1e3;
