@@ -1,12 +1,11 @@
 #include "core/pose_graph/graph_problem.h"
 
-#include <ceres/covariance.h>
 #include <ceres/crs_matrix.h>
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
-#include <set>
 #include <utility>
+
+#include "core/pose_graph/spanning_tree.h"
 
 namespace rgbd_pose {
 namespace {
@@ -55,19 +54,28 @@ MotionVector RelativePoseErrorTerm::ResidualAt(
   return root * e;
 }
 
-bool EdgeBlock::Evaluate(double const* const* parameters, double* residuals,
-                         double** jacobians) const {
-  const RotationAndCenter<double> ref = ref_->PoseAt(parameters[0]);
-  const RotationAndCenter<double> cur = cur_->PoseAt(parameters[1]);
+RotationAndCenter<double> MotionBetween(const RotationAndCenter<double>& ref,
+                                        const RotationAndCenter<double>& cur,
+                                        PosePairJacobian* jacobian) {
   const RotationAndCenter<double> motion = {cur.R * ref.R.transpose(),
                                             ref.R * (cur.C - ref.C)};
-  const Eigen::Matrix3d axes = EulerRates(parameters[0]);
-  PosePairJacobian jacobian = PosePairJacobian::Zero();
-  jacobian.block<3, 3>(0, 0) = -motion.R * axes;
-  jacobian.block<3, 3>(0, 6) = EulerRates(parameters[1]);
-  jacobian.block<3, 3>(3, 0) = -CrossMatrix(motion.C) * axes;
-  jacobian.block<3, 3>(3, 3) = -ref.R;
-  jacobian.block<3, 3>(3, 9) = ref.R;
+  jacobian->setZero();
+  jacobian->block<3, 3>(0, 0) = -motion.R;
+  jacobian->block<3, 3>(0, 6).setIdentity();
+  jacobian->block<3, 3>(3, 0) = -CrossMatrix(motion.C);
+  jacobian->block<3, 3>(3, 3) = -ref.R;
+  jacobian->block<3, 3>(3, 9) = ref.R;
+  return motion;
+}
+
+bool EdgeBlock::Evaluate(double const* const* parameters, double* residuals,
+                         double** jacobians) const {
+  PosePairJacobian jacobian;
+  const RotationAndCenter<double> motion = MotionBetween(
+      ref_->PoseAt(parameters[0]), cur_->PoseAt(parameters[1]), &jacobian);
+  for (int pose = 0; pose < 2; ++pose) {
+    jacobian.middleCols<3>(6 * pose) *= EulerRates(parameters[pose]);
+  }
   Eigen::Map<MotionVector>(residuals, 6) =
       term_.ResidualAt(motion, jacobians != nullptr ? &jacobian : nullptr);
   for (int pose = 0; jacobians != nullptr && pose < 2; ++pose) {
@@ -79,7 +87,8 @@ bool EdgeBlock::Evaluate(double const* const* parameters, double* residuals,
 }
 
 GraphProblem::GraphProblem(const GraphTerms& graph, double width)
-    : x_(graph.poses.size(), MotionVector::Zero()) {
+    : x_(graph.poses.size(), MotionVector::Zero()),
+      columns_(graph.poses.size(), -1) {
   origins_.reserve(graph.poses.size());
   for (const GraphTerms::Pose& pose : graph.poses) {
     origins_.emplace_back(pose.world_from_cam.Inverse());
@@ -89,10 +98,14 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width)
   // PoseGraph::Solve checks the input.
   options.disable_all_safety_checks = true;
   problem_ = std::make_unique<ceres::Problem>(options);
+  int columns = 0;
   for (size_t i = 0; i < x_.size(); ++i) {
     problem_->AddParameterBlock(x_[i].data(), 6);
     if (graph.poses[i].is_fixed) {
       problem_->SetParameterBlockConstant(x_[i].data());
+    } else {
+      columns_[i] = columns;
+      columns += 6;
     }
   }
   for (const GraphTerms::Edge& edge : graph.edges) {
@@ -106,49 +119,89 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width)
   }
 }
 
-int GraphProblem::FindUndetermined(double max_standard_deviation) {
-  if (is_empty()) return -1;
-  std::vector<int> free;  // the pose of each six columns
+Eigen::SparseMatrix<double> GraphProblem::Information() {
   ceres::Problem::EvaluateOptions evaluate;
   for (size_t i = 0; i < x_.size(); ++i) {
-    if (IsConstant(static_cast<int>(i))) continue;
-    free.push_back(static_cast<int>(i));
-    evaluate.parameter_blocks.push_back(x_[i].data());
+    if (columns_[i] >= 0) evaluate.parameter_blocks.push_back(x_[i].data());
   }
-  ceres::CRSMatrix crs;  // the Jacobian of all residuals under their losses
+  ceres::CRSMatrix crs;
   problem_->Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
   using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
   const Eigen::Map<const Sparse> J(
       crs.num_rows, crs.num_cols, static_cast<int>(crs.values.size()),
       crs.rows.data(), crs.cols.data(), crs.values.data());
-  const Eigen::SparseMatrix<double> H = J.transpose() * J;
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(H);
-  const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
-  const Eigen::VectorXd pivots = ldlt.vectorD();
-  for (int k = 0; k < pivots.size(); ++k) {
-    if (ldlt.info() == Eigen::Success && pivots[k] >= least) continue;
-    return free[ldlt.permutationPinv().indices()[k] / 6];
+  return J.transpose() * J;
+}
+
+MotionMatrix GraphProblem::CovarianceOf(const SparseInverse& inverse, int a,
+                                        int b) const {
+  MotionMatrix covariance = MotionMatrix::Zero();
+  if (IsConstant(a) || IsConstant(b)) return covariance;
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      covariance(i, k) = inverse(columns_[a] + i, columns_[b] + k);
+    }
   }
-  return -1;
+  return covariance;
+}
+
+int GraphProblem::FindUndetermined(const GraphTerms& graph,
+                                   double max_standard_deviation) {
+  const double limit = max_standard_deviation * max_standard_deviation;
+  const auto poses_of = [&](const GraphTerms::Edge& edge) {
+    return std::pair(origins_[edge.ref].PoseAt(x_[edge.ref].data()),
+                     origins_[edge.cur].PoseAt(x_[edge.cur].data()));
+  };
+  // First what an edge says by itself: that is at least as uncertain, and most
+  // graphs need no more.
+  std::vector<bool> is_determined;
+  PosePairJacobian jacobian;
+  for (const GraphTerms::Edge& edge : graph.edges) {
+    const auto [ref, cur] = poses_of(edge);
+    const RotationAndCenter<double> motion = MotionBetween(ref, cur, &jacobian);
+    jacobian.leftCols<6>().setIdentity();
+    const MotionVector r = RelativePoseErrorTerm(edge.cur_from_ref, edge.root)
+                               .ResidualAt(motion, &jacobian);
+    double rho[3] = {0.0, 1.0, 0.0};
+    if (edge.loss != nullptr) edge.loss->Evaluate(r.squaredNorm(), rho);
+    const MotionMatrix information =
+        rho[1] * jacobian.leftCols<6>().transpose() * jacobian.leftCols<6>();
+    is_determined.push_back(EigenOf(information).eigenvalues()[0] * limit >= 1);
+  }
+  const int outside = FirstOutside(SpanningTree(graph, is_determined), graph);
+  if (outside < 0) return -1;
+  // Then what all edges say together. A weak prior makes the covariance of what
+  // has no information large instead of infinite.
+  constexpr double kPrior = 1e-6;
+  Eigen::SparseMatrix<double> information = Information();
+  information.diagonal().array() += kPrior / limit;
+  const SparseInverse inverse(information);
+  if (!inverse.is_valid()) return outside;
+  for (size_t i = 0; i < graph.edges.size(); ++i) {
+    if (is_determined[i]) continue;
+    const GraphTerms::Edge& edge = graph.edges[i];
+    const auto [ref, cur] = poses_of(edge);
+    MotionBetween(ref, cur, &jacobian);
+    Eigen::Matrix<double, 12, 12> covariance;
+    covariance << CovarianceOf(inverse, edge.ref, edge.ref),
+        CovarianceOf(inverse, edge.ref, edge.cur),
+        CovarianceOf(inverse, edge.cur, edge.ref),
+        CovarianceOf(inverse, edge.cur, edge.cur);
+    is_determined[i] = EigenOf(jacobian * covariance * jacobian.transpose())
+                           .eigenvalues()[5] <= limit;
+  }
+  return FirstOutside(SpanningTree(graph, is_determined), graph);
 }
 
 std::vector<MotionMatrix> GraphProblem::MarginalCovariances(
-    const std::vector<int>& poses, int threads) {
-  ceres::Covariance::Options options;
-  options.num_threads = threads;
-  ceres::Covariance covariance(options);
-  std::vector<std::pair<const double*, const double*>> wanted;
-  for (const int pose : std::set<int>(poses.begin(), poses.end())) {
-    const double* x = x_[pose].data();
-    if (!IsConstant(pose)) wanted.emplace_back(x, x);
-  }
-  if (!wanted.empty() && !covariance.Compute(wanted, problem_.get())) return {};
-  std::vector<MotionMatrix> result;
+    const std::vector<int>& poses) {
+  std::vector<MotionMatrix> result(poses.size(), MotionMatrix::Zero());
+  if (is_empty()) return result;
+  const SparseInverse inverse(Information());
+  if (!inverse.is_valid()) return {};
+  result.clear();
   for (const int pose : poses) {
-    RowMajorBlock block = RowMajorBlock::Zero();
-    const double* x = x_[pose].data();
-    if (!IsConstant(pose)) covariance.GetCovarianceBlock(x, x, block.data());
-    result.push_back(block);
+    result.push_back(CovarianceOf(inverse, pose, pose));
   }
   return result;
 }

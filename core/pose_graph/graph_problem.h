@@ -3,6 +3,7 @@
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 
+#include <Eigen/SparseCore>
 #include <deque>
 #include <memory>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/estimation/batch_loss.h"
 #include "core/geometry/motion.h"
 #include "core/pose_graph/pose_graph.h"
+#include "core/pose_graph/sparse_inverse.h"
 
 // The motion between two poses that are both estimated. A pose is itself a
 // motion, from the world to the camera, in the parameters of
@@ -22,6 +24,12 @@ namespace rgbd_pose {
 
 using PosePairJacobian = Eigen::Matrix<double, 6, 12, Eigen::RowMajor>;
 using RowMajorBlock = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+// The motion from `ref` to `cur`, and d[omega C] / d[omega_ref C_ref omega_cur
+// C_cur]: omega of a pose is about the axes of its camera, C in the world.
+RotationAndCenter<double> MotionBetween(const RotationAndCenter<double>& ref,
+                                        const RotationAndCenter<double>& cur,
+                                        PosePairJacobian* jacobian);
 
 // S with S^T S = information; NaN if that is not positive semi-definite.
 MotionMatrix SqrtInformation(const MotionMatrix& information);
@@ -81,23 +89,25 @@ class GraphProblem {
     return origins_[pose].CurFromPrev(x_[pose].data()).Inverse();
   }
 
-  // A pose with a direction whose standard deviation exceeds the limit (rad or
-  // m); -1 if there is none. The pivots of a Cholesky decomposition are the
-  // information on one parameter if those eliminated before it are unknown and
-  // those after it known: an upper bound, exact for the last pivot.
-  int FindUndetermined(double max_standard_deviation);
+  // A pose that is not determined by `graph`, from which this was made; -1 if
+  // there is none. See PoseGraphOptions::max_standard_deviation.
+  int FindUndetermined(const GraphTerms& graph, double max_standard_deviation);
 
   // See PoseGraph::MarginalCovariances.
-  std::vector<MotionMatrix> MarginalCovariances(const std::vector<int>& poses,
-                                                int threads);
+  std::vector<MotionMatrix> MarginalCovariances(const std::vector<int>& poses);
 
  private:
-  bool IsConstant(int pose) const {
-    return problem_->IsParameterBlockConstant(x_[pose].data());
-  }
+  bool IsConstant(int pose) const { return columns_[pose] < 0; }
+
+  // J^T J of all residuals under their losses, by the poses that are not fixed.
+  Eigen::SparseMatrix<double> Information();
+
+  // The covariance between two poses, zero if one of them is fixed.
+  MotionMatrix CovarianceOf(const SparseInverse& inverse, int a, int b) const;
 
   std::vector<LinearizationPoint> origins_;
   std::vector<MotionVector> x_;
+  std::vector<int> columns_;  // of a pose: the first of six; -1: it is fixed
   std::deque<ScaledLoss> losses_;
   std::unique_ptr<ceres::Problem> problem_;
 };

@@ -201,9 +201,16 @@ GraphSolution PoseGraph::Solve() {
   solution = best.solution;
   solution.initial_cost = CostOf(graph_, 1.0);
   if (solution.ok()) {
-    const int pose = GraphProblem(best.graph, 1.0)
-                         .FindUndetermined(options_.max_standard_deviation);
-    is_refused(pose < 0 ? "" : NameOf(pose) + " is not determined",
+    const int pose =
+        GraphProblem(best.graph, 1.0)
+            .FindUndetermined(best.graph, options_.max_standard_deviation);
+    is_refused(pose < 0
+                   ? ""
+                   : NameOf(pose) +
+                         " is not determined: no path of motions with standard "
+                         "deviations of at most " +
+                         ShortNumber(options_.max_standard_deviation) +
+                         " (rad, m) leads to a fixed pose",
                GraphStatus::kSingular);
   }
   if (solution.ok()) {
@@ -223,7 +230,7 @@ void PoseGraph::AddEdge(const RelativePose& edge,
 
 std::vector<MotionMatrix> PoseGraph::MarginalCovariances(
     const std::vector<int>& poses) const {
-  return GraphProblem(graph_, 1.0).MarginalCovariances(poses, options_.threads);
+  return GraphProblem(graph_, 1.0).MarginalCovariances(poses);
 }
 
 double PoseGraph::OvercountingFactor() const {

@@ -45,8 +45,11 @@ struct PoseGraphOptions {
   // Stops when a step of all poses together is shorter than this (rad and m).
   double step_tolerance = 1e-6;
 
-  // A pose is not determined if some direction of it has a larger standard
-  // deviation (rad or m). Other parameters are held fixed or estimated with it.
+  // A motion between two poses is determined if no direction of it has a larger
+  // standard deviation (rad or m), all edges taken together; a pose if a path
+  // of edges with such motions leads from it to a fixed one. Along a path
+  // errors add up: for how far a pose may be from the fixed ones, see
+  // MarginalCovariances.
   double max_standard_deviation = 0.5;
 
   // Threads of the solver. Results may differ between numbers.

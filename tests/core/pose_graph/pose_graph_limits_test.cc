@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <string>
 #include <vector>
 
 #include "core/pose_graph/pose_graph.h"
@@ -41,6 +43,83 @@ TEST(PoseGraphTest, TheLimitIsAStandardDeviation) {
                 solution.ok() ? 0.0 : solution.initial_cost, 1e-9);
     EXPECT_EQ(graph.pose(1).translation.isZero(), !solution.ok());
     EXPECT_GT(solution.iterations, 0);
+  }
+}
+
+// A straight path of poses, as known from edges between neighbours alone; one
+// of the poses is fixed, and they are numbered from one end or from the other.
+PoseGraph StraightPath(int poses, int fixed, bool is_backwards) {
+  PoseGraph graph;
+  const auto number = [&](int i) { return is_backwards ? poses - 1 - i : i; };
+  for (int i = 0; i < poses; ++i) {
+    const Eigen::Vector3d position(0.1 * number(i), 0.0, 0.0);
+    graph.AddPose({Eigen::Quaterniond::Identity(), position},
+                  number(i) == fixed);
+  }
+  for (int i = 1; i < poses; ++i) {
+    RelativePose edge;
+    edge.ref = number(i - 1);
+    edge.cur = number(i);
+    edge.cur_from_ref.translation.x() = -0.1;
+    edge.covariance = 1e-6 * MotionMatrix::Identity();
+    graph.AddEdge(edge);
+  }
+  return graph;
+}
+
+// A long path is determined, though its far end is known to metres only; where
+// it is fixed and how its poses are numbered does not matter.
+TEST(PoseGraphTest, ALongPathIsDeterminedWhereverItIsFixed) {
+  constexpr int kPoses = 1000;
+  for (const int fixed : {0, 250, 500, kPoses - 1}) {
+    for (const bool is_backwards : {false, true}) {
+      PoseGraph graph = StraightPath(kPoses, fixed, is_backwards);
+      const GraphSolution solution = graph.Solve();
+      EXPECT_TRUE(solution.ok()) << solution.reason;
+      const int far = fixed < kPoses / 2 ? kPoses - 1 : 0;
+      const double n = std::abs(far - fixed);
+      const auto covariances =
+          graph.MarginalCovariances({is_backwards ? kPoses - 1 - far : far});
+      ASSERT_EQ(covariances.size(), 1U);
+      EXPECT_NEAR(covariances[0](0, 0), 1e-6 * n, 1e-11 * n);
+      EXPECT_NEAR(covariances[0](3, 3), 1e-6 * n, 1e-11 * n);
+      // Each pose on the way turns by 1 mrad, which moves the end sideways: by
+      // 1 mrad times 0.1 m, 0.2 m, ...; the last turn is that of the end
+      // itself.
+      const double m = far > fixed ? n - 1 : n;
+      EXPECT_NEAR(covariances[0](4, 4),
+                  1e-6 * n + 1e-8 * m * (m + 1) * (2 * m + 1) / 6, 1e-6);
+    }
+  }
+}
+
+// Each of two edges leaves another direction of pose 1 open, to 3 m; together
+// they determine it. Without the second one it is not determined, nor what is
+// linked to it, wherever the path is fixed.
+TEST(PoseGraphTest, EdgesDetermineAPoseTogether) {
+  for (const bool both : {true, false}) {
+    for (const int fixed : {0, 1, 2}) {
+      PoseGraph graph;
+      for (int i = 0; i < 3; ++i) graph.AddPose(Rigid3d(), i == fixed);
+      const auto add = [&](int ref, int cur, int weak) {
+        RelativePose edge;
+        edge.ref = ref;
+        edge.cur = cur;
+        edge.covariance = 1e-4 * MotionMatrix::Identity();
+        if (weak >= 0) edge.covariance(weak, weak) = 9.0;
+        graph.AddEdge(edge);
+      };
+      add(0, 1, 3);
+      if (both) add(0, 1, 4);
+      add(1, 2, -1);
+      const GraphSolution solution = graph.Solve();
+      EXPECT_EQ(solution.ok(), both) << solution.reason;
+      if (both) continue;
+      EXPECT_EQ(solution.reason,
+                std::string(fixed == 0 ? "pose 1" : "pose 0") +
+                    " is not determined: no path of motions with standard "
+                    "deviations of at most 0.5 (rad, m) leads to a fixed pose");
+    }
   }
 }
 
