@@ -78,13 +78,18 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                                   {"damaged_frames", calibration.damaged},
                                   {"calibration", CalibrationToJson(result)}};
   folder.WriteFile("metrics.json", metrics.dump(2) + "\n");
-  if (FLAGS_report) {
+  if (FLAGS_report && HasReportLibrary()) {
     folder.WriteFile("report.html", CalibrationPage(result, calibration.path));
   }
   folder.Publish();
   std::printf("%s%.1f s; results in %s\n",
               FormatCalibrationSummary(result).c_str(), seconds,
               FLAGS_output.c_str());
+  if (FLAGS_report) {
+    std::printf("report in   %s\n",
+                HasReportLibrary() ? (FLAGS_output + "/report.html").c_str()
+                                   : kNoReportLibrary);
+  }
   if (!calibration.stopped.empty()) {
     std::fprintf(stderr, "%s: stopped early (%s); results so far are in %s\n",
                  info.name.c_str(), calibration.stopped.c_str(),

@@ -34,7 +34,8 @@ rgbd_pose_embed(script kScript ${folder}/plots.js ${folder}/run.js
                 ${folder}/run_cloud.js
                 ${folder}/run_times.js
                 ${folder}/run_residuals.js ${folder}/batch.js
-                ${folder}/compare.js ${folder}/sweep.js ${folder}/main.js)
+                ${folder}/compare.js ${folder}/sweep.js
+                ${folder}/calibration.js ${folder}/main.js)
 set(folder ${CMAKE_CURRENT_SOURCE_DIR}/view/page)
 rgbd_pose_embed(view_page kViewPage ${folder}/view.html)
 rgbd_pose_embed(view_style kViewStyle

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "apps/figures/svg_chart.h"
 #include "core/evaluation/association.h"
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
@@ -130,58 +129,6 @@ std::string PoseCells(const std::optional<Rigid3d>& pose) {
   return cells;
 }
 
-ChartSeries Series(const std::vector<ComparedPath>& paths, size_t k) {
-  const std::string& name = paths[k].name;
-  if (name == kTruthName) return {name, {"#bbbbbb", "", -1}, 4.0, {}};
-  const bool has_truth = paths[0].name == kTruthName;
-  ChartSeries series = {name, StyleOf(static_cast<int>(has_truth ? k - 1 : k))};
-  series.style.marker = -1;
-  return series;
-}
-
-ChartPanel TopView(const std::vector<ComparedPath>& paths, int row) {
-  ChartPanel panel = {row == 1 ? "X-Y" : "X-Z", "X (m)",
-                      row == 1 ? "Y (m)" : "Z (m)"};
-  panel.is_map = true;
-  for (size_t k = 0; k < paths.size(); ++k) {
-    ChartSeries series = Series(paths, k);
-    for (const ComparedPose& pose : paths[k].poses) {
-      const Eigen::Vector3d p = pose.world_from_cam.has_value()
-                                    ? pose.world_from_cam->translation
-                                    : Eigen::Vector3d::Constant(NAN);
-      series.points.push_back({p.x(), p(row)});
-    }
-    panel.series.push_back(series);
-  }
-  return panel;
-}
-
-ChartPanel ErrorsOverTime(const std::vector<ComparedPath>& paths,
-                          std::optional<double> ComparedPose::*error,
-                          double factor, const char* title, const char* label) {
-  ChartPanel panel = {title, "time since the first frame (s)", label};
-  panel.log_y = true;
-  for (size_t k = 1; k < paths.size(); ++k) {
-    ChartSeries series = Series(paths, k);
-    for (const ComparedPose& pose : paths[k].poses) {
-      series.points.push_back(
-          {pose.timestamp - paths[k].poses.front().timestamp,
-           (pose.*error).value_or(NAN) * factor});
-    }
-    panel.series.push_back(series);
-  }
-  return panel;
-}
-
-bool HasErrors(const std::vector<ComparedPath>& paths) {
-  for (const ComparedPath& path : paths) {
-    for (const ComparedPose& pose : path.poses) {
-      if (pose.distance.has_value()) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string EndPoseTable(const std::vector<LossRun>& runs,
@@ -250,21 +197,6 @@ std::string ComparedPathsCsvRows(const std::string& name,
     }
   }
   return text;
-}
-
-std::string PathFigure(const std::string& title,
-                       const std::vector<ComparedPath>& paths) {
-  Chart chart = {title, {TopView(paths, 1), TopView(paths, 2)}};
-  chart.panel_height_px = 300;
-  if (HasErrors(paths)) {
-    chart.panels.push_back(
-        ErrorsOverTime(paths, &ComparedPose::distance, kMillimetresPerMetre,
-                       "Distance from the ground truth", "distance (mm)"));
-    chart.panels.push_back(
-        ErrorsOverTime(paths, &ComparedPose::angle, kDegreesPerRadian,
-                       "Angle from the ground truth", "angle (deg)"));
-  }
-  return FormatSvg(chart);
 }
 
 }  // namespace rgbd_pose

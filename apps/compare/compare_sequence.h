@@ -65,9 +65,4 @@ inline constexpr char kPathColumns[] =
     "timestamp,x,y,z,qx,qy,qz,qw,distance_m,angle_deg,rpe_seconds_m,"
     "rpe_seconds_deg";
 
-// SVG with top views X-Y and X-Z of the paths, as in the thesis' Figures 4.8
-// and 4.9, and, with a truth, the errors over time.
-std::string PathFigure(const std::string& title,
-                       const std::vector<ComparedPath>& paths);
-
 }  // namespace rgbd_pose

@@ -66,10 +66,6 @@ std::vector<SweepCell> ReadSweepCsv(const std::string& path);
 // that start from identity: one row per loss, one column per share.
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
-// SVG of the median errors (rotation or translation) and 95 % bands over the
-// share of wrong matches: all losses from identity, with both schedules.
-std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation);
-
 // Describes the result of a sweep with its figures: the best M-estimator, its
 // margin and spread, and the effect of a start from RANSAC.
 std::string SweepVerdict(const std::vector<SweepCell>& cells);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "apps/compare/compare_sweep.h"
-#include "apps/figures/svg_chart.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -211,35 +210,6 @@ std::string SweepTable(const std::vector<SweepCell>& cells) {
     text += "\n";
   }
   return text;
-}
-
-std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
-  Chart chart;
-  chart.title = std::string("Median ") +
-                (rotation ? "rotation" : "translation") +
-                " errors with their 95 % bands, from identity";
-  chart.panel_width_px = 330;
-  chart.panel_height_px = 420;
-  for (const char* schedule : {"gnc", "direct"}) {
-    ChartPanel panel = {
-        schedule == std::string("gnc") ? "Graduated from wide to narrow (gnc)"
-                                       : "Final width from the start (direct)",
-        "wrong matches (%)", rotation ? "error (deg)" : "error (mm)"};
-    panel.log_y = true;
-    int style = 0;
-    for (const std::string& loss : LossesOf(cells)) {
-      ChartSeries series = {loss, StyleOf(style++)};
-      for (const SweepCell& cell : CellsOf(cells, {loss, schedule, false})) {
-        const MedianBand& band =
-            rotation ? cell.rotation_deg : cell.translation_mm;
-        series.points.push_back(
-            {cell.outlier_share * 100.0, band.median, band.low, band.high});
-      }
-      panel.series.push_back(series);
-    }
-    chart.panels.push_back(panel);
-  }
-  return FormatSvg(chart);
 }
 
 }  // namespace rgbd_pose

@@ -45,9 +45,8 @@ class SequenceExperiment {
                 settings.odometry.estimator.cost + ", frontend " +
                 settings.odometry.frontend + ".\n\n") {}
 
-  void Add(const std::string& title, const std::string& figure,
-           FrameSource* source, const std::optional<Trajectory>& truth,
-           bool returns_to_start) {
+  void Add(const std::string& title, FrameSource* source,
+           const std::optional<Trajectory>& truth, bool returns_to_start) {
     PrepareOutput(output_);
     const std::vector<LossRun> runs = Track(source, truth);
     std::vector<std::string> shares;
@@ -74,11 +73,9 @@ class SequenceExperiment {
           EndPoseTable(runs, returns_to_start) +
           "\nFrames tracked (%): " + Join(shares) + ".\n";
     }
-    report_ += "\n![Top views of the paths](" + figure + ")\n\n";
+    report_ += "\n";
     tables_ += SequenceCsvRows(title, runs);
-    const std::vector<ComparedPath> paths = ComparePaths(runs, truth);
-    paths_ += ComparedPathsCsvRows(title, paths);
-    WriteOutput(output_, figure, PathFigure(title, paths));
+    paths_ += ComparedPathsCsvRows(title, ComparePaths(runs, truth));
   }
 
   ExperimentResult Finish() const {
@@ -145,7 +142,7 @@ ExperimentResult RunSimulated(const ExperimentSettings& settings,
   SyntheticDataset dataset(options);
   experiment.Add(
       "simulated " + name + ", " + std::to_string(settings.frames) + " frames",
-      "paths.svg", &dataset, dataset.ground_truth(),
+      &dataset, dataset.ground_truth(),
       /*returns_to_start=*/name == "pan_tilt");
   return experiment.Finish();
 }
@@ -167,7 +164,6 @@ ExperimentResult RunRecorded(const ExperimentSettings& settings,
     Sequence sequence = OpenSequence(files);
     const std::string units = Format("%.10g", scale);
     experiment.Add(name + ", " + units + " raw depth units per metre",
-                   scales.size() == 1 ? "paths.svg" : "paths_" + units + ".svg",
                    sequence.source.get(), sequence.ground_truth,
                    /*returns_to_start=*/false);
   }

@@ -94,18 +94,13 @@ ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
   const std::vector<SweepCell> cells =
       RunSweep(settings.odometry.estimator, losses, settings.seeds);
   WriteOutput(output, "sweep.csv", SweepCsv(cells));
-  WriteOutput(output, "translation.svg",
-              SweepFigure(cells, /*rotation=*/false));
-  WriteOutput(output, "rotation.svg", SweepFigure(cells, /*rotation=*/true));
   return {"# M-estimators on wrong matches\n\n" + SweepVerdict(cells) +
           "\n\nMedian translation errors (mm) and their 95 % bands over " +
           std::to_string(settings.seeds) + " trials of " +
           std::to_string(kMatches) +
           " matches with Kinect noise;\ngraduated losses that start from "
           "identity:\n\n" +
-          SweepTable(cells) +
-          "\n![Translation errors](translation.svg)\n"
-          "![Rotation errors](rotation.svg)\n"};
+          SweepTable(cells)};
 }
 
 }  // namespace rgbd_pose

@@ -37,12 +37,13 @@ struct Calibration : CalibrationResult {
 };
 
 void EachField(PickledBytes* bytes, Calibration& r) {
-  (*bytes)(r.like, r.parameters, r.is_accepted, r.reason, r.camera, r.found,
-           r.keyframes, r.pairs, r.held_out_pairs, r.landmarks, r.views,
-           r.cost_before, r.cost_after, r.gain_sigmas, r.pixel_before,
-           r.pixel_after, r.depth_before, r.depth_after, r.residuals, r.noise,
-           r.truth_before, r.truth_after, r.halves, r.halves_spread,
-           r.displacement_px, r.passes, r.scale_from);
+  (*bytes)(r.like, r.parameters, r.is_better, r.is_accepted, r.reason, r.camera,
+           r.found, r.keyframes, r.pairs, r.held_out_pairs, r.landmarks,
+           r.views, r.cost_before, r.cost_after, r.gain_sigmas, r.unseen_before,
+           r.unseen_after, r.unseen_sigmas, r.pixel_before, r.pixel_after,
+           r.depth_before, r.depth_after, r.residuals, r.noise, r.noise_before,
+           r.noise_found, r.truth_before, r.truth_after, r.halves,
+           r.halves_spread, r.displacement_px, r.passes, r.scale_from);
 }
 
 Calibration CalibrateFile(const py::object& path, const py::object& camera,

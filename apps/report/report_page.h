@@ -46,18 +46,15 @@ std::string FillPage(
     const std::vector<std::pair<std::string_view, std::string>>& parts);
 
 // A self-contained page with the data and the scripts that draw its `kind`:
-// "run", "batch", "comparison" or "sweep".
+// "run", "batch", "comparison", "sweep" or "calibration".
 std::string ReportPage(std::string_view kind, const nlohmann::json& data);
 
 // A self-contained page about a calibration: verdict, parameters, residuals of
-// held-out views, path seen from above.
+// held-out views with both cameras (means over the image show errors of a lens;
+// how late a row seems to be, and their spread over the speed in the image,
+// those of clocks and shutters), path seen from above.
 std::string CalibrationPage(const CalibrationResult& result,
                             const Trajectory& path);
-
-// Its pictures of these residuals (SVG), with both cameras: means over the
-// image show errors of a lens; how late a row seems to be, and their spread
-// over the speed in the image, those of clocks and shutters.
-std::string ResidualPictures(const CalibrationResult& result);
 
 // Writes report.html for a "run", "batch" or "comparison" from the files in its
 // folder; returns its path. Throws InputError for missing or broken files.

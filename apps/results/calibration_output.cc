@@ -84,6 +84,7 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
     text += WhatIsLeft(result) + "\n" + HalvesInWords(result) + "\n";
+    text += UnseenInWords(result) + "\n";
     text += Format(
         "features scatter by %.3g times what the frontend states "
         "(--feature_noise)\n",
@@ -157,6 +158,9 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
           {"cost_before", result.cost_before},
           {"cost_after", result.cost_after},
           {"gain_sigmas", result.gain_sigmas},
+          {"unseen_cost_before", result.unseen_before},
+          {"unseen_cost_after", result.unseen_after},
+          {"unseen_gain_sigmas", result.unseen_sigmas},
           {"truth_error_before", result.truth_before},
           {"truth_error_after", result.truth_after},
           {"pixel_spread_before", result.pixel_before},

@@ -50,7 +50,7 @@ std::string WriteFound(const RecordingCalibration& found,
     output.WriteFile("depth_noise.yaml",
                      FormatDepthNoiseFile(result.noise->model));
   }
-  if (FLAGS_report) {
+  if (FLAGS_report && HasReportLibrary()) {
     output.WriteFile("calibration.html", CalibrationPage(result, found.path));
   }
   return FormatCalibrationSummary(result) +

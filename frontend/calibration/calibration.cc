@@ -6,6 +6,7 @@
 
 #include "core/util/input_error.h"
 #include "costs/calibration/bundle_adjustment.h"
+#include "frontend/calibration/calibration_comparison.h"
 #include "frontend/calibration/calibration_verdict.h"
 
 namespace rgbd_pose {
@@ -236,6 +237,8 @@ struct CalibrationSteps {
                    &with_map_poses);
     result.cost_of_map = with_map_poses.cost_before;
     CompareHeldOut(views_before, before, data.views, after, &result);
+    CompareOnUnseen(views_before, before, data.views, after, determined, prior,
+                    on_iteration, &result);
   }
 
   void SolveWithAllPairs() {
@@ -255,7 +258,8 @@ struct CalibrationSteps {
     std::string why_not = WhyNoBetter(first, settings, result);
     result.is_better = why_not.empty();
     if (result.is_better) {
-      result.noise_found = FitDepthNoise(data.views, after, features.depth.noise);
+      result.noise_found =
+          FitDepthNoise(data.views, after, features.depth.noise);
       why_not = WhyUnchecked(settings, result);
     }
     result.Conclude(first, why_not);

@@ -1,3 +1,5 @@
+#include "frontend/calibration/calibration_halves.h"
+
 #include <cmath>
 
 #include "frontend/calibration/calibration_result.h"
@@ -5,17 +7,10 @@
 namespace rgbd_pose {
 namespace {
 
-// The views of consecutive keyframes and their solution.
-struct Part {
-  CalibrationViews views;
-  CalibrationState state;
-  CalibrationVector variance;  // of theta
-};
-
-// The state is that of the whole recording.
-Part PartOf(const CalibrationViews& all, const CalibrationState& found,
-            int begin, int end) {
-  Part part;
+// The part of consecutive keyframes. The state is that of the whole recording.
+CalibrationHalf PartOf(const CalibrationViews& all,
+                       const CalibrationState& found, int begin, int end) {
+  CalibrationHalf part;
   CalibrationViews& views = part.views;
   views.camera = all.camera;
   views.world_from_cam.assign(found.world_from_cam.begin() + begin,
@@ -56,6 +51,13 @@ Part PartOf(const CalibrationViews& all, const CalibrationState& found,
 
 }  // namespace
 
+std::array<CalibrationHalf, 2> HalvesOf(const CalibrationViews& views,
+                                        const CalibrationState& solved) {
+  const int all = static_cast<int>(views.world_from_cam.size());
+  return {PartOf(views, solved, 0, all / 2),
+          PartOf(views, solved, all / 2, all)};
+}
+
 double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves) {
   if (halves.empty()) return 0.0;
   double squares = 0.0;
@@ -69,34 +71,35 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationPrior& prior,
     const std::function<void()>& on_iteration) {
-  const int all = static_cast<int>(views.world_from_cam.size());
   // Smaller parts cannot be calibrated.
-  constexpr int kMinKeyframes = 3;
+  constexpr size_t kMinKeyframes = 3;
   constexpr size_t kMinViews = 200;
-  Part halves[2];
+  std::array<CalibrationHalf, 2> halves = HalvesOf(views, found);
+  CalibrationVector variance[2];
   // One half after the other: in parallel, the order of additions would change.
-  for (int half = 0; half < 2; ++half) {
-    const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
-    if (end - begin < kMinKeyframes) return {};
-    Part& part = halves[half];
-    part = PartOf(views, found, begin, end);
-    if (part.views.views.size() < kMinViews) return {};
-    const BundleAdjustment problem(part.views, prior, false,
+  for (int k = 0; k < 2; ++k) {
+    CalibrationHalf& half = halves[k];
+    if (half.views.world_from_cam.size() < kMinKeyframes ||
+        half.views.views.size() < kMinViews) {
+      return {};
+    }
+    const BundleAdjustment problem(half.views, prior, false,
                                    BundleAdjustment::kMaxIterations,
                                    on_iteration);
-    if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
-    problem.MeasureScales(&part.state);
-    const auto variances = problem.Variances(is_free, part.state);
+    if (!std::isfinite(problem.Solve(is_free, &half.state))) return {};
+    problem.MeasureScales(&half.state);
+    const auto variances = problem.Variances(is_free, half.state);
     if (!variances.has_value()) return {};
-    part.variance = *variances;
+    variance[k] = *variances;
   }
   std::vector<HalvesOfParameter> result;
   for (int k = 0; k < kCalibrationSize; ++k) {
     if (!is_free[k]) continue;
-    const double floor = CalibrationFloor(k, all / 2);
-    result.push_back({k, halves[0].state.theta[k], halves[1].state.theta[k],
-                      std::sqrt(halves[0].variance[k] + halves[1].variance[k] +
-                                2.0 * floor * floor)});
+    const double floor =
+        CalibrationFloor(k, static_cast<int>(views.world_from_cam.size() / 2));
+    result.push_back(
+        {k, halves[0].state.theta[k], halves[1].state.theta[k],
+         std::sqrt(variance[0][k] + variance[1][k] + 2.0 * floor * floor)});
   }
   return result;
 }

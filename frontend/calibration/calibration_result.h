@@ -100,6 +100,13 @@ struct CalibrationResult {
   double gain_sigmas = 0.0;  // their difference in standard deviations
   double cost_of_map = 0.0;  // with the first camera and the poses of the map
 
+  // Mean robust cost of a view in one half of the recording, with the first
+  // camera and with the camera found in the other half, and their difference in
+  // standard errors over ten parts of the recording. 0 if not compared.
+  double unseen_before = 0.0;
+  double unseen_after = 0.0;
+  double unseen_sigmas = 0.0;
+
   // Spread of the residuals, in px and in sigmas of the depth noise.
   double pixel_before = 0.0;  // with the first camera
   double pixel_after = 0.0;   // with the camera found

@@ -2,12 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
-#include <vector>
 
-#include "core/evaluation/trajectory.h"
-#include "core/geometry/motion.h"
 #include "core/util/format.h"
 #include "frontend/calibration/calibration_passes.h"
 
@@ -29,47 +24,6 @@ bool HasRaysAllAround(const Camera& camera) {
   return true;
 }
 
-// Returns the robust cost of a view of the i-th landmark and its error (px).
-double CostOf(const CalibrationViews& views, const LandmarkView& view,
-              bool with_depth, const CalibrationState& state,
-              const std::vector<MotionDerivatives>& poses, size_t i,
-              const CalibrationState& scales, Eigen::Vector2d* error) {
-  const Landmark& landmark = views.landmarks[i];
-  const double d = state.inverse_depths[i];
-  const LandmarkData data = DataOf(views, landmark, view, scales);
-  const MotionDerivatives& anchor = poses[landmark.anchor];
-  const MotionDerivatives& there = poses[view.keyframe];
-  const double square = kLandmarkLossWidth * kLandmarkLossWidth;
-  LandmarkPixel::Residual<double>(anchor, there, d, state.theta.data(), data,
-                                  error->data());
-  double cost = square * std::log1p(error->squaredNorm() / square);
-  *error /= data.inverse_sigma_px;
-  if (with_depth) {
-    double r;
-    LandmarkDepth::Residual<double>(anchor, there, d, state.theta.data(), data,
-                                    &r);
-    cost += square * std::log1p(r * r / square);
-  }
-  return 0.5 * cost;
-}
-
-// The motion (px/s) in the image of the i-th landmark in a view.
-Eigen::Vector2d FlowOf(const CalibrationViews& views, const LandmarkView& view,
-                       const CalibrationState& state,
-                       const std::vector<MotionDerivatives>& poses, size_t i) {
-  const Landmark& landmark = views.landmarks[i];
-  const double d = state.inverse_depths[i];
-  const double* const theta = state.theta.data();
-  const Eigen::Vector3d X =
-      InView<double>(poses[landmark.anchor], poses[view.keyframe], d, theta,
-                     DataOf(views, landmark, view, state)) /
-      d;
-  Eigen::Vector3d v;
-  views.twists[view.keyframe].PointVelocity(X.data(), v.data());
-  return {theta[kFx] * (v.x() - X.x() / X.z() * v.z()) / X.z(),
-          theta[kFy] * (v.y() - X.y() / X.z() * v.z()) / X.z()};
-}
-
 // The parameter whose halves differ most; null if the halves were not compared.
 const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
   const auto worst = std::max_element(
@@ -81,78 +35,6 @@ const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
 }
 
 }  // namespace
-
-void CompareHeldOut(const CalibrationViews& views_before,
-                    const CalibrationState& before,
-                    const CalibrationViews& views_after,
-                    const CalibrationState& after, CalibrationResult* result) {
-  struct OfPair {
-    double before = 0.0, after = 0.0;
-    int count = 0;
-  };
-  std::map<std::pair<int, int>, OfPair> pairs;
-  const auto poses_before = PosesOf(before), poses_after = PosesOf(after);
-  result->residuals.clear();
-  for (size_t i = 0; i < views_before.landmarks.size(); ++i) {
-    const Landmark& landmark = views_before.landmarks[i];
-    const auto begin = views_before.views.begin() + landmark.first_view;
-    const auto end = begin + landmark.num_views;
-    const bool has_trained = std::any_of(
-        begin, end, [](const LandmarkView& view) { return !view.is_held_out; });
-    // Other landmarks are placed only by their own depth.
-    if (!has_trained) continue;
-    for (auto view = begin; view != end; ++view) {
-      if (!view->is_held_out) continue;
-      const LandmarkView& view_after =
-          views_after.views[view - views_before.views.begin()];
-      const bool with_depth = view->depth.inverse_sigma > 0.0 &&
-                              view_after.depth.inverse_sigma > 0.0;
-      OfPair& pair = pairs[std::minmax(landmark.anchor, view->keyframe)];
-      HeldOutResidual residual = {view->u, view->v, {}, {}, {}};
-      residual.flow = FlowOf(views_after, view_after, after, poses_after, i);
-      pair.before += CostOf(views_before, *view, with_depth, before,
-                            poses_before, i, after, &residual.before);
-      pair.after += CostOf(views_after, view_after, with_depth, after,
-                           poses_after, i, after, &residual.after);
-      ++pair.count;
-      result->residuals.push_back(residual);
-    }
-  }
-  double sum = 0.0, squares = 0.0;
-  OfPair all;
-  for (const auto& [keyframes, pair] : pairs) {
-    const double gain = (pair.before - pair.after) / pair.count;
-    sum += gain;
-    squares += gain * gain;
-    all.before += pair.before;
-    all.after += pair.after;
-    all.count += pair.count;
-  }
-  const int n = static_cast<int>(pairs.size());
-  result->held_out_pairs = n;
-  if (n < 2) return;
-  result->cost_before = all.before / all.count;
-  result->cost_after = all.after / all.count;
-  const double mean = sum / n;
-  const double variance = (squares - n * mean * mean) / (n - 1);
-  result->gain_sigmas = variance > 0.0 ? mean / std::sqrt(variance / n) : 0.0;
-}
-
-double TruthError(const CalibrationData& data, const CalibrationState& state,
-                  const Trajectory& truth) {
-  double sum = 0.0;
-  int count = 0;
-  for (const auto& [a, b] : data.pairs) {
-    const auto b_from_a =
-        MotionAlong(truth, data.timestamps[a], data.timestamps[b]);
-    if (!b_from_a.has_value()) continue;
-    const Rigid3d found =
-        state.world_from_cam[b].Inverse() * state.world_from_cam[a];
-    sum += (b_from_a->Inverse() * found).translation.squaredNorm();
-    ++count;
-  }
-  return count > 0 ? std::sqrt(sum / count) : 0.0;
-}
 
 std::string WhatIsLeft(const CalibrationResult& result) {
   constexpr double kOfFeatures = 0.3;  // px, with rendered recordings
@@ -197,6 +79,14 @@ std::string HalvesInWords(const CalibrationResult& result) {
                    result.halves_spread);
   }
   return text;
+}
+
+std::string UnseenInWords(const CalibrationResult& result) {
+  if (result.unseen_before == 0.0) return "a half could not be solved";
+  return Format(
+      "each half with the camera found in the other half: cost per view %.4g "
+      "-> %.4g (%.1f standard errors)",
+      result.unseen_before, result.unseen_after, result.unseen_sigmas);
 }
 
 std::string ImplausibilityReason(const RgbdCamera& first,
@@ -261,6 +151,9 @@ std::string WhyNoBetter(const RgbdCamera& first,
         "%.3g %% (%.3g standard deviations)",
         gain < 0.0 ? "rises" : "falls", 100.0 * std::abs(gain),
         std::abs(result.gain_sigmas));
+  }
+  if (!(result.unseen_sigmas >= kMinSigmas)) {
+    return "it fits no better what it has not seen: " + UnseenInWords(result);
   }
   if (result.truth_after > result.truth_before) {
     return Format(

@@ -10,7 +10,6 @@ namespace rgbd_pose {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 Rigid3d At(double x, double turn = 0.0) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitX())),
@@ -78,9 +77,6 @@ TEST(ComparePathsTest, WithoutTruthTheWorldIsThatOfTheRuns) {
   ASSERT_EQ(paths.size(), 1u);
   EXPECT_EQ(paths[0].poses[2].world_from_cam->translation.x(), 4.0);
   EXPECT_FALSE(paths[0].poses[2].distance.has_value());
-  const std::string svg = PathFigure("path", paths);
-  EXPECT_THAT(svg, Not(HasSubstr("nan")));
-  EXPECT_THAT(svg, Not(HasSubstr("Distance from the ground truth")));
 }
 
 TEST(ComparePathsTest, RowsLeaveUnknownCellsEmpty) {

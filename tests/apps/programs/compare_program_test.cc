@@ -49,18 +49,7 @@ int Count(const std::string& text, const std::string& part) {
   return count;
 }
 
-// Every element is closed and no number is NaN.
-void ExpectWellFormedSvg(const std::string& svg, int panels) {
-  EXPECT_EQ(svg.rfind("<svg ", 0), 0u);
-  EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
-  const int opened = Count(svg, "<") - Count(svg, "</");
-  EXPECT_EQ(opened, Count(svg, "</") + Count(svg, "/>"));
-  EXPECT_EQ(Count(svg, "font-weight=\"bold\""), panels);
-  EXPECT_EQ(Count(svg, "nan"), 0);
-  EXPECT_EQ(Count(svg, "inf"), 0);
-}
-
-TEST_F(CompareProgramTest, PanTiltGivesTablesAndFigure) {
+TEST_F(CompareProgramTest, PanTiltGivesTables) {
   const RunResult run = Compare(
       "--experiment=pan_tilt --frames=6 --losses=none,tukey" + Camera());
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -76,7 +65,6 @@ TEST_F(CompareProgramTest, PanTiltGivesTablesAndFigure) {
   EXPECT_EQ(Count(run.out, "no file: built without plotly.js"), !has_page);
   // The truth and two losses, six frames each.
   EXPECT_EQ(Count(Result("paths.csv"), "\n"), 1 + 3 * 6);
-  ExpectWellFormedSvg(Result("paths.svg"), 4);
 }
 
 TEST_F(CompareProgramTest, ARunCanBeRepeatedFromItsFlags) {
@@ -113,7 +101,6 @@ TEST_F(CompareFolderTest, FewFramesOfAFolder) {
   EXPECT_THAT(run.out, HasSubstr("# M-estimators on a 'long' name\n"));
   EXPECT_THAT(run.out, HasSubstr("## a 'long' name, 5000 raw depth units"));
   EXPECT_EQ(Count(run.out, "| n/a | n/a |"), 2) << "shorter than 1 s";
-  ExpectWellFormedSvg(Result("paths.svg"), 4);
 }
 
 TEST_F(CompareFolderTest, Freiburg2ComesAtBothDepthScales) {
@@ -126,8 +113,6 @@ TEST_F(CompareFolderTest, Freiburg2ComesAtBothDepthScales) {
   EXPECT_EQ(Count(run.out, "Frames tracked (%): none 100.0, tukey 100.0."), 2);
   EXPECT_EQ(Count(run.out, "ATE"), 0);
   EXPECT_EQ(Count(Result("tables.csv"), "\n"), 1 + 2 * 2);
-  ExpectWellFormedSvg(Result("paths_5000.svg"), 2);
-  ExpectWellFormedSvg(Result("paths_5208.svg"), 2);
 }
 
 TEST_F(CompareFolderTest, AllFramesLost) {
@@ -142,7 +127,6 @@ TEST_F(CompareFolderTest, AllFramesLost) {
     EXPECT_EQ(run.exit_code, 3) << run.err;
     EXPECT_THAT(run.out, HasSubstr(", 5000000 raw depth units"));
     EXPECT_EQ(Count(run.out, "\n| tukey | n/a | n/a | n/a |"), 1);
-    ExpectWellFormedSvg(Result("paths.svg"), 2);
   }
 }
 
@@ -152,8 +136,6 @@ TEST_F(CompareProgramTest, SweepGivesEveryCell) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   // 2 losses, 2 schedules, 2 starts, 7 shares, and the header.
   EXPECT_EQ(Count(Result("sweep.csv"), "\n"), 2 * 2 * 2 * 7 + 1);
-  ExpectWellFormedSvg(Result("translation.svg"), 2);
-  ExpectWellFormedSvg(Result("rotation.svg"), 2);
   EXPECT_THAT(run.out, HasSubstr("tukey has the smallest median"));
   const std::string csv = Result("sweep.csv");
   ASSERT_EQ(

@@ -3,13 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 #include <string>
 
 #include "core/util/text_file.h"
-#include "tests/support/run_program.h"
+#include "tests/support/browser.h"
 
 namespace rgbd_pose {
 namespace {
@@ -60,31 +58,9 @@ class ReportTest : public testing::Test {
     return RunCommand(command, folder_);
   }
 
-  static bool HasBrowser() {
-    return std::system("command -v chromium >/dev/null") == 0;
-  }
-
   // Opens the page of the run in the browser; `action` is a list of its flags.
   RunResult Browse(const std::string& action) const {
-    return Run(
-        "timeout 60 chromium --headless --no-sandbox --disable-gpu "
-        "--disable-quic --no-first-run --disable-background-networking "
-        "--disable-component-update --disable-sync --enable-unsafe-swiftshader "
-        "--enable-logging=stderr --virtual-time-budget=10000 --user-data-dir=" +
-        (folder_ / "browser") + " " + action + " file://" + Page());
-  }
-
-  // The browser's messages about the page, without its advice on speed.
-  static std::string Console(const RunResult& browser) {
-    std::istringstream lines(browser.err);
-    std::string line, result;
-    while (std::getline(lines, line)) {
-      if (line.find("CONSOLE") == std::string::npos) continue;
-      if (line.find("Canvas2D: ") != std::string::npos) continue;
-      if (line.find("GL Driver Message") != std::string::npos) continue;
-      result += line + "\n";
-    }
-    return result;
+    return rgbd_pose::Browse(Page(), action, folder_);
   }
 
   const TempFolder folder_;
