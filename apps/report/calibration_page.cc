@@ -55,14 +55,13 @@ std::string CalibrationPage(const CalibrationResult& result,
     places["z"].push_back(Rounded(p.z(), 1e-4));
   }
   const bool is_noise = !result.noise || result.noise->IsPlausible();
-  return ReportPage("calibration",
-                    {{"calibration", CalibrationToJson(result)},
-                     {"noise_is_plausible", is_noise},
-                     {"words", WordsOf(result)},
-                     {"width", result.camera.camera.width},
-                     {"height", result.camera.camera.height},
-                     {"residuals", Residuals(result)},
-                     {"path", places}});
+  return ReportPage("calibration", {{"calibration", CalibrationToJson(result)},
+                                    {"noise_is_plausible", is_noise},
+                                    {"words", WordsOf(result)},
+                                    {"width", result.camera.camera.width},
+                                    {"height", result.camera.camera.height},
+                                    {"residuals", Residuals(result)},
+                                    {"path", places}});
 }
 
 }  // namespace rgbd_pose

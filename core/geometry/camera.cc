@@ -67,18 +67,32 @@ Vector2d InvertEquidistant(const Lens<double>& lens,
   return distorted * (std::tan(t) / wanted);
 }
 
+// Exposure of rows of the first Kinect (Kerl et al., ICCV 2015), s.
+constexpr double kKinectColorReadout = 0.028;
+constexpr double kKinectDepthReadout = 0.027;
+
 // TUM RGB-D benchmark, "intrinsic camera calibration" table; its depth factors
-// are already applied in the released images. Rows are read in 28 ms (Kerl et
-// al., ICCV 2015). The lead of depth over colour (s) depends on the driver: 15
-// to 20 ms for freiburg1, 0 to 5 ms for freiburg3, unknown for freiburg2.
+// are already applied in the released images. The lead of depth over
+// colour (s) depends on the driver: 15 to 20 ms for freiburg1, 0 to 5 ms for
+// freiburg3, unknown for freiburg2.
 RgbdCamera TumCamera(const Camera& camera, double depth_lead) {
-  constexpr Shutter kColor = {-0.0075, 0.028, true};
-  constexpr double kDepthReadout = 0.027;
+  constexpr Shutter kColor = {-0.0075, kKinectColorReadout, true};
   return {camera,
           5000.0,
           {},
           kColor,
-          {kColor.offset - depth_lead, kDepthReadout},
+          {kColor.offset - depth_lead, kKinectDepthReadout},
+          *FindNamed(DepthNoiseModels(), "kinect")};
+}
+
+// Another Kinect: focal lengths that OpenNI's drivers state, exposure in the
+// middle of the image at the stamp.
+RgbdCamera KinectCamera(const Camera& camera) {
+  return {camera,
+          1000.0,
+          {},
+          {0.0, kKinectColorReadout, true},
+          {0.0, kKinectDepthReadout},
           *FindNamed(DepthNoiseModels(), "kinect")};
 }
 
@@ -92,6 +106,8 @@ const Named<RgbdCamera> kPresets[] = {
                 0.231222, -0.784899, -0.003257, -0.000105, 0.917205},
                0.0)},
     {"tum_fr3", TumCamera({640, 480, 535.4, 539.2, 320.1, 247.6}, 0.0025)},
+    {"kinect", KinectCamera({640, 480, 525.0, 525.0, 319.5, 239.5})},
+    {"7scenes", KinectCamera({640, 480, 585.0, 585.0, 320.0, 240.0})},
     {"ros_default", {}},  // the defaults
 };
 
@@ -105,8 +121,7 @@ std::string Camera::Check() const {
     }
   }
   if (fx <= 0.0 || fy <= 0.0) {
-    return "fx and fy must be positive (ICL-NUIM's fy = -480: mirror the "
-           "images or use its TUM-compatible release)";
+    return "fx and fy must be positive";
   }
   const double size = std::max(width, height);
   for (const double f : {fx, fy}) {  // views of 157 and of 0.6 degrees

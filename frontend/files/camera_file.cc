@@ -108,6 +108,20 @@ DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
                    "'; give cam1 or a later one of a Kalibr file");
 }
 
+// Open3D: width, height and intrinsic_matrix, column by column.
+Camera ReadOpen3d(const YamlSection& file) {
+  const std::vector<double> k = file.Numbers("intrinsic_matrix", {9});
+  return {file.Pixels("width"), file.Pixels("height"), k[0], k[4], k[6], k[7]};
+}
+
+// The camera of images that are turned upside down.
+Camera UpsideDown(Camera camera) {
+  camera.fy = -camera.fy;
+  camera.cy = camera.height - 1 - camera.cy;
+  camera.p1 = -camera.p1;
+  return camera;
+}
+
 Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
   if (file.HasKeyStartingWith("Camera.") ||
       file.HasKeyStartingWith("Camera1.")) {
@@ -115,14 +129,16 @@ Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
   }
   if (file.Has("camera_matrix")) return ReadCameraInfoFile(file);
   if (file.Has("cam0")) return ReadKalibr(file, "cam0");
+  if (file.Has("intrinsic_matrix")) return ReadOpen3d(file);
   throw InputError(path +
                    ": contains no camera; supported layouts are ORB-SLAM "
-                   "(Camera.fx), ROS camera_info (camera_matrix) and Kalibr "
-                   "(cam0)");
+                   "(Camera.fx), ROS camera_info (camera_matrix), Kalibr "
+                   "(cam0) and Open3D (intrinsic_matrix)");
 }
 
 std::optional<double> ReadDepthScale(const YamlSection& file) {
-  for (const char* key : {"DepthMapFactor", "RGBD.DepthMapFactor"}) {
+  for (const char* key :
+       {"DepthMapFactor", "RGBD.DepthMapFactor", "depth_scale"}) {
     if (!file.Has(key)) continue;
     const double scale = file.Number(key);
     if (scale < 1.0) {
@@ -211,6 +227,19 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   CameraSetup result(camera);
   result.depth_scale = depth_scale;
   if (!remark.empty()) result.remark = path + ": " + remark;
+  result.is_upside_down = result.camera.fy < 0.0;
+  if (result.is_upside_down) {
+    result.camera = UpsideDown(result.camera);
+    const bool is_plain = IsOfColor(depth_camera) &&
+                          camera.color_shutter.readout == 0.0 &&
+                          camera.depth_shutter.readout == 0.0 &&
+                          camera.depth_correction.depth_from_color.IsIdentity();
+    if (!is_plain) {
+      throw InputError(path +
+                       ": fy < 0 is supported for registered depth without "
+                       "readouts only; turn the images upside down");
+    }
+  }
   RequireSound(result.camera.Check(), path + ": ");
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +
@@ -248,7 +277,13 @@ CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
 }
 
 RgbdCamera ResolveCamera(const std::string& file_or_preset) {
-  return RegisteredCamera(ResolveCameraSetup(file_or_preset, kColorCamera));
+  const CameraSetup setup = ResolveCameraSetup(file_or_preset, kColorCamera);
+  if (setup.is_upside_down) {
+    throw InputError(file_or_preset +
+                     ": fy < 0: only recordings are turned upside down; turn "
+                     "images of your own, and give fy > 0");
+  }
+  return RegisteredCamera(setup);
 }
 
 }  // namespace rgbd_pose

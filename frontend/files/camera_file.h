@@ -36,6 +36,11 @@ struct CameraSetup {
   // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;
 
+  // Whether images must be turned upside down before they fit `camera`: the y
+  // axis of the calibration points up (fy < 0), as in ICL-NUIM. Paths are then
+  // in the world of the recording, which is a mirror image.
+  bool is_upside_down = false;
+
   // What users should know about the file, in one line: unknown keys.
   std::string remark;
 };

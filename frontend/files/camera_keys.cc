@@ -16,12 +16,24 @@ constexpr int kMaxCameras = 16;  // of a Kalibr file
 
 // The keys at the top level that ReadCameraText reads.
 Keys ReadAtTop() {
-  Keys keys = {
-      "DepthMapFactor",   "RGBD.DepthMapFactor",    "inverse_depth_offset",
-      "depth_rotation",   "depth_translation",      "depth_noise",
-      "Camera.type",      "Camera.width",           "Camera.height",
-      "image_width",      "image_height",           "camera_matrix",
-      "distortion_model", "distortion_coefficients"};
+  Keys keys = {"DepthMapFactor",
+               "RGBD.DepthMapFactor",
+               "inverse_depth_offset",
+               "depth_rotation",
+               "depth_translation",
+               "depth_noise",
+               "Camera.type",
+               "Camera.width",
+               "Camera.height",
+               "image_width",
+               "image_height",
+               "camera_matrix",
+               "distortion_model",
+               "distortion_coefficients",
+               "width",
+               "height",
+               "intrinsic_matrix",
+               "depth_scale"};
   for (const ShutterParameter& parameter : kShutterParameters) {
     keys.push_back(parameter.name);
   }

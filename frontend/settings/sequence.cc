@@ -35,6 +35,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   if (camera != nullptr) {
     const CameraSetup said = options.camera.value_or(CameraSetup());
     options.camera.emplace(*camera).depth_camera = said.depth_camera;
+    options.camera->is_upside_down = said.is_upside_down;
     options.depth_scale = 0.0;
   }
   return options;

@@ -56,11 +56,19 @@ Frame CorrectDepth(const RgbdCamera& camera, Frame frame) {
 FrameAssembly::FrameAssembly(const CameraSetup& setup, bool keep_color)
     : camera_(RegisteredCamera(setup)),
       depth_size_(SizeOf(camera_.camera)),
-      keep_color_(keep_color) {
+      keep_color_(keep_color),
+      is_upside_down_(setup.is_upside_down) {
   if (!setup.depth_camera.has_value()) return;
   depth_size_ = SizeOf(setup.depth_camera->camera);
   registration_ =
       std::make_shared<DepthRegistration>(*setup.depth_camera, camera_.camera);
+}
+
+cv::Mat FrameAssembly::Upright(const cv::Mat& image) const {
+  if (!is_upside_down_) return image;
+  cv::Mat turned;
+  cv::flip(image, turned, /*flipCode=*/0);  // rows from the bottom
+  return turned;
 }
 
 Frame FrameAssembly::Make(Frame frame, const Named& gray, const cv::Mat& color,
@@ -68,10 +76,10 @@ Frame FrameAssembly::Make(Frame frame, const Named& gray, const cv::Mat& color,
   CheckSize(gray, SizeOf(camera_.camera), "camera");
   CheckSize(depth, depth_size_,
             registration_ == nullptr ? "camera" : "depth camera");
-  frame.gray = gray.image;
-  if (keep_color_) frame.color = color;
+  frame.gray = Upright(gray.image);
+  if (keep_color_) frame.color = Upright(color);
   frame.depth = registration_ == nullptr
-                    ? depth.image
+                    ? Upright(depth.image)
                     : registration_->Register(depth.image, camera_.depth_scale);
   frame.depth_scale = camera_.depth_scale;
   return CorrectDepth(camera_, std::move(frame));

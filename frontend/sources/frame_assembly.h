@@ -40,14 +40,20 @@ class FrameAssembly {
   Frame Make(Frame frame, const Named& gray, const cv::Mat& color,
              const Named& depth) const;
 
+  // Whether images are turned upside down, see CameraSetup.
+  bool is_upside_down() const { return is_upside_down_; }
+
   // The same from two files.
   Frame Read(Frame frame, const std::string& color_path,
              const std::string& depth_path) const;
 
  private:
+  cv::Mat Upright(const cv::Mat& image) const;
+
   RgbdCamera camera_;
   cv::Size depth_size_;
   bool keep_color_;
+  bool is_upside_down_;                                    // see CameraSetup
   std::shared_ptr<const DepthRegistration> registration_;  // null: not needed
 };
 

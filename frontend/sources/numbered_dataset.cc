@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/frame_assembly.h"
@@ -56,12 +58,11 @@ class NumberedDataset final : public Dataset {
   NumberedDataset(const NumberedLayout& layout, const SourceOptions& options)
       : layout_(layout),
         folder_(FindFrames(options.path)),
+        times_(FindTimes()),
         assembly_(ChooseSetup(options), options.keep_color) {}
 
   int size() const override { return static_cast<int>(folder_.frames.size()); }
-  double timestamp(int index) const override {
-    return folder_.frames[index].number / kNumberedRate;
-  }
+  double timestamp(int index) const override { return times_[index]; }
   Frame Read(int index) const override {
     const NumberedFrame& files = folder_.frames[index];
     return assembly_.Read({index, timestamp(index)}, files.color_path,
@@ -76,6 +77,12 @@ class NumberedDataset final : public Dataset {
       if (pose != poses.end()) truth.push_back({timestamp(i), pose->second});
     }
     return truth;
+  }
+  std::vector<std::string> remarks() const override {
+    if (has_times_) return {};
+    return {folder_.path.string() +
+            Format(": has no timestamps.txt: %g frames per second are assumed",
+                   kNumberedRate)};
   }
   int unmatched_color() const override {
     return static_cast<int>(folder_.numbers.size() - folder_.frames.size());
@@ -106,18 +113,37 @@ class NumberedDataset final : public Dataset {
     return found;
   }
 
+  // The times of all frames, s.
+  std::vector<double> FindTimes() {
+    const std::vector<double> of_images = NumberedTimes(folder_);
+    has_times_ = !of_images.empty();
+    std::vector<double> times;
+    for (const NumberedFrame& frame : folder_.frames) {
+      const auto place = std::lower_bound(folder_.numbers.begin(),
+                                          folder_.numbers.end(), frame.number);
+      times.push_back(has_times_ ? of_images[place - folder_.numbers.begin()]
+                                 : frame.number / kNumberedRate);
+    }
+    return times;
+  }
+
   CameraSetup ChooseSetup(const SourceOptions& options) const {
     std::optional<CameraSetup> own;
-    if (!options.camera.has_value() && layout_.camera != nullptr) {
-      own = layout_.camera(folder_);
-    }
+    if (!options.camera.has_value()) own = NumberedCamera(layout_, folder_);
     CameraSetup setup = ChooseCamera(options, own);
     if (!setup.depth_scale) setup.depth_scale = layout_.depth_scale;
+    const std::optional<RgbdCamera> preset = CameraPreset(layout_.preset);
+    if (preset.has_value() && !setup.color_shutter.is_known) {
+      setup.color_shutter = preset->color_shutter;
+      setup.depth_shutter = preset->depth_shutter;
+    }
     return setup;
   }
 
   const NumberedLayout& layout_;
   NumberedFolder folder_;
+  bool has_times_ = false;     // else 30 frames per second are assumed
+  std::vector<double> times_;  // of the frames, s
   FrameAssembly assembly_;
 };
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <opencv2/core.hpp>
 
-#include "core/evaluation/trajectory.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -16,19 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// intrinsic.json, or the file name of Open3D's recorder: width, height and
-// intrinsic_matrix, column by column. JSON is valid YAML.
+// The first of some files that exists in a folder; empty: none.
+fs::path FirstOf(const fs::path& folder,
+                 std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (PathExists(folder / name)) return folder / name;
+  }
+  return {};
+}
+
+// intrinsic.json, or the file name of Open3D's recorder.
 std::optional<CameraSetup> Open3dCamera(const NumberedFolder& folder) {
-  fs::path path = folder.path / "intrinsic.json";
-  if (!PathExists(path)) path = folder.path / "camera_intrinsic.json";
-  if (!PathExists(path)) return std::nullopt;
-  const YamlSection file = YamlSection::FromFile(path.string());
-  const int width = file.Pixels("width");
-  const int height = file.Pixels("height");
-  const std::vector<double> k = file.Numbers("intrinsic_matrix", {9});
-  CameraSetup setup(Camera{width, height, k[0], k[4], k[6], k[7]});
-  if (file.Has("depth_scale")) setup.depth_scale = file.Number("depth_scale");
-  return setup;
+  const fs::path path =
+      FirstOf(folder.path, {"intrinsic.json", "camera_intrinsic.json"});
+  if (path.empty()) return std::nullopt;
+  return ReadCameraFile(path.string());
 }
 
 // cam_params.json of the folder, or of its parent for all rooms.
@@ -191,32 +193,6 @@ NumberedPoses ReadPoseTable(const NumberedFolder& folder, const char* name,
   return poses;
 }
 
-// *.gt.freiburg: TUM text in which the time is the frame's number, from 1. The
-// world is mirrored (its y axis is inverted), which is undone (ICL-NUIM).
-NumberedPoses ReadMirroredPoses(const NumberedFolder& folder) {
-  NumberedPoses poses;
-  std::error_code error;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(folder.path, error)) {
-    const fs::path& path = entry.path();
-    if (path.extension() != ".freiburg" || path.stem().extension() != ".gt") {
-      continue;
-    }
-    const Trajectory mirrored = ReadTrajectory(path.string());
-    for (const StampedPose& pose : mirrored) {
-      // M T M with M = diag(1, -1, 1) has a proper rotation again.
-      const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
-      const Eigen::Vector3d& t = pose.world_from_cam.translation;
-      const auto place = static_cast<size_t>(std::lround(pose.timestamp)) - 1;
-      poses[NumberOf(folder, place, mirrored.size())] =
-          Rigid3d(Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()),
-                  {t.x(), -t.y(), t.z()});
-    }
-    break;
-  }
-  return poses;
-}
-
 }  // namespace
 
 const std::vector<NumberedLayout>& NumberedLayouts() {
@@ -228,7 +204,10 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        1000.0,
        [](const NumberedFolder& folder) {
          return ReadPoseFiles(folder, "frame-%06d.pose.txt");
-       }},
+       },
+       nullptr,
+       "",
+       "7scenes"},
       {"scannet",
        "ScanNet as exported (color/0.jpg, depth/0.png, pose/0.txt, intrinsic/)",
        {"color/*.jpg", "color/*.png"},
@@ -249,18 +228,15 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
          return ReadPoseTable(folder, "traj.txt", 0, 1);
        },
        ReplicaCamera},
-      {"icl_nuim",
-       "ICL-NUIM in TUM's PNG files (rgb/0.png, depth/0.png, "
-       "associations.txt)",
-       {"rgb/*.png"},
-       {"depth/*.png"},
-       5000.0,
-       ReadMirroredPoses,
-       // Of ICL-NUIM's renderer, with the y axis of its images down.
-       [](const NumberedFolder&) {
-         return std::optional(CameraSetup(Camera{640, 480, 481.2, 480.0}));
-       },
-       "associations.txt"},
+      {"frame_pairs",
+       "images beside each other (frame_00000_rgb.png, frame_00000_depth.png)",
+       {"frame_*_rgb.png", "frame_*_rgb.jpg", "frame_*_color.png",
+        "frame_*_color.jpg"},
+       {"frame_*_depth.png"},
+       1000.0,
+       [](const NumberedFolder& folder) {
+         return ReadPoseTable(folder, "trajectory.log", 3, 4);
+       }},
       {"open3d",
        "Open3D, Redwood (color/, rgb/ or image/, and depth/ with numbered "
        "images, intrinsic.json)",
@@ -274,6 +250,46 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        Open3dCamera},
   };
   return layouts;
+}
+
+std::optional<CameraSetup> NumberedCamera(const NumberedLayout& layout,
+                                          const NumberedFolder& folder) {
+  if (layout.camera != nullptr) {
+    std::optional<CameraSetup> own = layout.camera(folder);
+    if (own.has_value()) return own;
+  }
+  const fs::path text =
+      FirstOf(folder.path, {"camera-intrinsics.txt", "camera_intrinsics.txt",
+                            "intrinsics.txt", "intrinsic.txt"});
+  if (!text.empty()) {
+    return CameraSetup(
+        ReadIntrinsicText(text, folder.frames.front().color_path));
+  }
+  const std::optional<RgbdCamera> preset = CameraPreset(layout.preset);
+  if (!preset.has_value()) return std::nullopt;
+  return CameraSetup(*preset);
+}
+
+std::vector<double> NumberedTimes(const NumberedFolder& folder) {
+  const fs::path file =
+      FirstOf(folder.path, {"timestamps.txt", "timestamp.txt", "times.txt"});
+  if (file.empty()) return {};
+  const std::string path = file.string();
+  std::vector<double> times;
+  for (const TextLine& line : ReadTextTable(path)) {
+    const double time = ParseTimestamp(line.words.back(), path, line.number);
+    if (!times.empty() && time <= times.back()) {
+      throw InputError(path, line.number,
+                       "the time is not after that of the previous line");
+    }
+    times.push_back(time);
+  }
+  if (times.size() != folder.numbers.size()) {
+    throw InputError(path + Format(": has %zu times, but there are %zu colour "
+                                   "images; they must be one for one",
+                                   times.size(), folder.numbers.size()));
+  }
+  return times;
 }
 
 }  // namespace rgbd_pose

@@ -27,7 +27,7 @@ struct NumberedFolder {
 // The poses world_from_cam of images by their numbers: some, or too many.
 using NumberedPoses = std::map<int, Rigid3d>;
 
-// A layout whose images are numbered and have no time stamps.
+// A layout whose images are numbered.
 struct NumberedLayout {
   const char* name;  // of the source
   const char* what;  // description for messages
@@ -43,14 +43,30 @@ struct NumberedLayout {
   NumberedPoses (*poses)(const NumberedFolder& folder);
 
   // Reads the camera, given at least one frame. Nothing if the folder does not
-  // specify it; null: none of this layout does.
+  // specify it; null: a text file may (see NumberedCamera).
   std::optional<CameraSetup> (*camera)(const NumberedFolder& folder) = nullptr;
 
   const char* mark = "";  // a file that only this layout has; "": none needed
+
+  // The preset of the camera that took all recordings of this layout: its
+  // calibration is used if there is no other, its readouts if another
+  // calibration states none. "": several cameras.
+  const char* preset = "";
 };
 
-// Frames per second: all are from a Kinect or rendered as if.
+// Frames per second where a folder has no times.
 constexpr double kNumberedRate = 30.0;
+
+// The camera of a folder: as its layout stores it; a camera matrix in
+// intrinsics.txt, camera-intrinsics.txt or another usual name, row by row; or
+// the preset of its layout. Nothing if there is none.
+std::optional<CameraSetup> NumberedCamera(const NumberedLayout& layout,
+                                          const NumberedFolder& folder);
+
+// The times (s) of all colour images in timestamps.txt or times.txt, the last
+// word of each line. Empty if there is no such file. Throws InputError if it
+// has another number of lines, or if times do not increase.
+std::vector<double> NumberedTimes(const NumberedFolder& folder);
 
 // All layouts. A folder is opened with the first one that fits.
 const std::vector<NumberedLayout>& NumberedLayouts();

@@ -53,10 +53,12 @@ SourceType BagType(BagKind kind, const char* name, const char* what) {
 const std::vector<SourceType>& Types() {
   static const std::vector<SourceType> types = [] {
     std::vector<SourceType> all = {
-        {"tum", "TUM RGB-D (rgb.txt and depth.txt)",
+        {"tum", "TUM RGB-D (rgb.txt and depth.txt, or associations.txt)",
          [](const SourceOptions& options) {
            return !options.associations_file.empty() ||
-                  HasFile(options, "rgb.txt") || HasFile(options, "depth.txt");
+                  HasFile(options, "rgb.txt") ||
+                  HasFile(options, "depth.txt") ||
+                  HasFile(options, "associations.txt");
          },
          OpenTum},
         BagType(BagKind::kRos1, "rosbag",
@@ -71,6 +73,12 @@ const std::vector<SourceType>& Types() {
                   HasFile(options, "camera_matrix.csv");
          },
          OpenStrayScanner},
+        {"record3d", "Record3D (rgb/0.jpg, depth/0.exr, metadata.json)",
+         [](const SourceOptions& options) {
+           return HasFile(options, "metadata.json") &&
+                  HasFile(options, "depth/0.exr");
+         },
+         OpenRecord3d},
         // Never detected from a path.
         {"openni2", "OpenNI 2 camera (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},

@@ -31,6 +31,10 @@ std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
 // Next throws it where the video ends too early.
 std::unique_ptr<FrameSource> OpenStrayScanner(const SourceOptions& options);
 
+// A folder of the app Record3D; its path is that of ARKit. Throws InputError
+// also for inconsistent files; in a build without OpenEXR, Read does.
+std::unique_ptr<FrameSource> OpenRecord3d(const SourceOptions& options);
+
 // A LatestFrame of the camera with this URI, or of `any`. Throws InputError
 // also in a build without OpenNI 2.
 std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options);

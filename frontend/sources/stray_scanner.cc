@@ -14,6 +14,7 @@
 #include "frontend/files/video_file.h"
 #include "frontend/frame/depth_resampling.h"
 #include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/scaled_images.h"
 #include "frontend/sources/stray_scanner_files.h"
 #endif
 
@@ -27,25 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxWidth = 640;         // of frames, px
 constexpr uint8_t kMinConfidence = 1;  // of the levels 0, 1 and 2
-
-// The camera of the same image, scaled to a size.
-Camera Scaled(const Camera& camera, const cv::Size& size) {
-  const double x = static_cast<double>(size.width) / camera.width;
-  const double y = static_cast<double>(size.height) / camera.height;
-  return {size.width,
-          size.height,
-          camera.fx * x,
-          camera.fy * y,
-          (camera.cx + 0.5) * x - 0.5,
-          (camera.cy + 0.5) * y - 0.5};
-}
-
-// The affine map from pixels of `from` to those of `to`, at the same pose.
-cv::Matx23d PixelMap(const Camera& from, const Camera& to) {
-  const double x = to.fx / from.fx;
-  const double y = to.fy / from.fy;
-  return {x, 0.0, to.cx - x * from.cx, 0.0, y, to.cy - y * from.cy};
-}
 
 class StrayScanner final : public FrameSource {
  public:
@@ -97,9 +79,9 @@ class StrayScanner final : public FrameSource {
     const int width = options.camera.has_value()
                           ? options.camera->camera.width
                           : std::min(size.width, kMaxWidth);
-    camera_ = Scaled(ReadStrayCamera(folder_, size),
-                     {width, cvRound(static_cast<double>(width) * size.height /
-                                     size.width)});
+    camera_ = ScaledTo(ReadStrayCamera(folder_, size),
+                       {width, cvRound(static_cast<double>(width) *
+                                       size.height / size.width)});
     CameraSetup own(camera_);
     own.depth_scale = kMillimetresPerMetre;
     return FrameAssembly(ChooseCamera(options, own), options.keep_color);
@@ -113,8 +95,8 @@ class StrayScanner final : public FrameSource {
     cv::resize(image, color, size, 0.0, 0.0, cv::INTER_AREA);
     if (row.camera.has_value()) {
       cv::warpAffine(
-          color.clone(), color, PixelMap(camera_, Scaled(focused, size)), size,
-          cv::INTER_CUBIC | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+          color.clone(), color, PixelMap(camera_, ScaledTo(focused, size)),
+          size, cv::INTER_CUBIC | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
     }
     cv::Mat gray;
     cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
@@ -122,7 +104,7 @@ class StrayScanner final : public FrameSource {
     return assembly_.Make(
         {index, row.timestamp}, {gray, video_.path()}, color,
         {ResampleDepth(depth, size,
-                       PixelMap(camera_, Scaled(focused, depth.size()))),
+                       PixelMap(camera_, ScaledTo(focused, depth.size()))),
          row.depth_path});
   }
 

@@ -18,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kAssociations[] = "associations.txt";
+
 struct ListedImage {
   double timestamp;
   std::string path;
@@ -60,13 +62,28 @@ std::vector<TextLine> ReadLines(const std::string& list, size_t columns,
   return lines;
 }
 
+// Whether the times are rather those from one image to the next: short, and as
+// often smaller as larger than the one before.
+bool AreIntervals(const std::vector<ListedImage>& images) {
+  constexpr double kLongest = 1.0;  // s
+  size_t smaller = 0;
+  for (size_t i = 0; i < images.size(); ++i) {
+    if (images[i].timestamp > kLongest) return false;
+    smaller += i > 0 && images[i].timestamp <= images[i - 1].timestamp;
+  }
+  return 3 * smaller > images.size();
+}
+
 void CheckTimeOrder(const std::string& list,
                     const std::vector<ListedImage>& images) {
   for (size_t i = 1; i < images.size(); ++i) {
     if (images[i].timestamp >= images[i - 1].timestamp) continue;
     throw InputError(list, images[i].line,
-                     "the time stamp is earlier than the previous one; sort "
-                     "the list");
+                     AreIntervals(images)
+                         ? "the times look like intervals between images; add "
+                           "them up to time stamps"
+                         : "the time stamp is earlier than the previous one; "
+                           "sort the list");
   }
 }
 
@@ -163,6 +180,16 @@ TumLists ReadTumAssociations(const std::string& folder,
   return lists;
 }
 
+// The file that pairs the images: given, or in a folder without lists.
+std::string AssociationsOf(const SourceOptions& options) {
+  if (!options.associations_file.empty()) return options.associations_file;
+  const fs::path folder = options.path;
+  const bool has_lists =
+      PathExists(folder / "rgb.txt") || PathExists(folder / "depth.txt");
+  const fs::path own = folder / kAssociations;
+  return !has_lists && PathExists(own) ? own.string() : "";
+}
+
 TumLists ReadLists(const SourceOptions& options) {
   RequireSound(options.Check());
   std::error_code error;
@@ -171,9 +198,55 @@ TumLists ReadLists(const SourceOptions& options) {
                      ": no such folder; give the folder of a TUM RGB-D "
                      "sequence");
   }
-  return options.associations_file.empty()
+  const std::string associations = AssociationsOf(options);
+  return associations.empty()
              ? ReadTumLists(options.path, options.max_time_difference)
-             : ReadTumAssociations(options.path, options.associations_file);
+             : ReadTumAssociations(options.path, associations);
+}
+
+// ICL-NUIM's releases in TUM's layout: times are the numbers of the images.
+bool IsIclNuim(const SourceOptions& options, const TumLists& lists) {
+  return options.associations_file.empty() &&
+         !AssociationsOf(options).empty() &&
+         std::all_of(lists.pairs.begin(), lists.pairs.end(),
+                     [](const PairedImages<ListedImage>& pair) {
+                       const auto number = ParseWhole(
+                           fs::path(pair.color.path).stem().string());
+                       return number == pair.color.timestamp;
+                     });
+}
+
+// The camera of ICL-NUIM's renderer, as its page states it: fy = -480.
+CameraSetup IclNuimCamera() {
+  CameraSetup setup(Camera{640, 480, 481.2, 480.0, 319.5, 239.5});
+  setup.is_upside_down = true;
+  return setup;
+}
+
+// The true path of a folder: groundtruth.txt, or ICL-NUIM's *.gt.freiburg.
+fs::path TruthFile(const fs::path& folder) {
+  std::error_code error;
+  if (PathExists(folder / "groundtruth.txt")) return folder / "groundtruth.txt";
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const fs::path& path = entry.path();
+    const bool is_truth =
+        path.extension() == ".freiburg" && path.stem().extension() == ".gt";
+    if (is_truth) return path;
+  }
+  return {};
+}
+
+// The same path in a world whose y axis is inverted.
+Trajectory Mirrored(Trajectory path) {
+  // M T M with M = diag(1, -1, 1) has a proper rotation again.
+  for (StampedPose& pose : path) {
+    const Eigen::Quaterniond q = pose.world_from_cam.rotation;
+    const Eigen::Vector3d t = pose.world_from_cam.translation;
+    pose.world_from_cam =
+        Rigid3d(Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()),
+                {t.x(), -t.y(), t.z()});
+  }
+  return path;
 }
 
 // The image size is taken from an image, since the file does not contain it.
@@ -196,7 +269,7 @@ CameraSetup ReadCalibrationText(const std::string& path,
 }
 
 std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
-                                     const TumLists& lists,
+                                     const TumLists& lists, bool is_icl_nuim,
                                      std::string* remark) {
   if (options.camera.has_value()) return std::nullopt;  // not needed
   const fs::path folder = options.path;
@@ -209,7 +282,11 @@ std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
     return ReadCalibrationText((folder / "calibration.txt").string(),
                                lists.pairs.front().color.path);
   }
-  return std::nullopt;
+  if (!is_icl_nuim) return std::nullopt;
+  *remark = options.path +
+            ": has no calibration; as times are the numbers of the images, the "
+            "camera of ICL-NUIM is taken (fx 481.2, fy -480)";
+  return IclNuimCamera();
 }
 
 class TumDataset final : public Dataset {
@@ -217,9 +294,10 @@ class TumDataset final : public Dataset {
   explicit TumDataset(const SourceOptions& options)
       : folder_(options.path),
         lists_(ReadLists(options)),
-        assembly_(
-            ChooseCamera(options, OwnCamera(options, lists_, &camera_remark_)),
-            options.keep_color) {}
+        is_icl_nuim_(IsIclNuim(options, lists_)),
+        assembly_(ChooseCamera(options, OwnCamera(options, lists_, is_icl_nuim_,
+                                                  &camera_remark_)),
+                  options.keep_color) {}
 
   int size() const override { return static_cast<int>(lists_.pairs.size()); }
   double timestamp(int index) const override {
@@ -235,10 +313,13 @@ class TumDataset final : public Dataset {
   int unmatched_color() const override { return lists_.unmatched_color; }
 
   Trajectory ground_truth() const override {
-    const fs::path path = fs::path(folder_) / "groundtruth.txt";
-    if (!PathExists(path)) return {};
+    const fs::path path = TruthFile(folder_);
+    if (path.empty()) return {};
     truth_remarks_.clear();
-    return ReadTrajectory(path.string(), &truth_remarks_);
+    Trajectory truth = ReadTrajectory(path.string(), &truth_remarks_);
+    // ICL-NUIM's world fits only its own camera.
+    const bool fits = !is_icl_nuim_ || assembly_.is_upside_down();
+    return fits ? truth : Mirrored(std::move(truth));
   }
 
   std::vector<std::string> remarks() const override {
@@ -253,6 +334,7 @@ class TumDataset final : public Dataset {
  private:
   std::string folder_;
   TumLists lists_;
+  bool is_icl_nuim_;
   std::string camera_remark_;
   mutable std::vector<std::string> truth_remarks_;
   FrameAssembly assembly_;

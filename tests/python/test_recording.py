@@ -86,7 +86,7 @@ def test_refuses_what_it_cannot_read(sequence, tmp_path):
         ("unknown source 'lidar'", sequence, {"source": "lidar"}),
         ("frames", sequence, {"frames": "all"}),
         ("none of them", sequence, {"frames": "9999-"}),
-        ("camera 'kinect'", sequence, {"camera": "kinect"}),
+        ("camera 'kinnect'", sequence, {"camera": "kinnect"}),
         ("depth_camera 'cam1': needs", sequence, {"depth_camera": "cam1"}),
     ]:
         with pytest.raises(rgbd_pose.InputError, match=match):

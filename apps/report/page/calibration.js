@@ -83,22 +83,24 @@ function parameters(data) {
   }).style.height = '';
 }
 
-// The mean residuals in cells of the image, as arrows that are enlarged.
-function meanResiduals(data, camera, zoom) {
+// The residuals in cells of the image, as arrows that are enlarged: medians, since
+// wrong matches would turn means.
+function cellResiduals(data, camera, zoom) {
   const kCells = 16, kFew = 3;
   const cell = data.width / kCells;
-  const sums = new Map();
+  const cells = new Map();
   for (const row of data.residuals) {
     const key = Math.floor(row[1] / cell) * kCells + Math.floor(row[0] / cell);
-    const sum = sums.get(key) || [0, 0, 0];
-    sums.set(key, [sum[0] + row[camera.at], sum[1] + row[camera.at + 1], sum[2] + 1]);
+    if (!cells.has(key)) cells.set(key, []);
+    cells.get(key).push([row[camera.at], row[camera.at + 1]]);
   }
   const lines = {x: [], y: []}, ends = {x: [], y: []};
-  for (const [key, [du, dv, count]] of sums) {
-    if (count < kFew) continue;
+  for (const [key, all] of cells) {
+    if (all.length < kFew) continue;
+    const du = median(all.map(r => r[0])), dv = median(all.map(r => r[1]));
     const u = (key % kCells + 0.5) * cell, v = (Math.floor(key / kCells) + 0.5) * cell;
-    lines.x.push(u, u + zoom * du / count, null);
-    lines.y.push(v, v + zoom * dv / count, null);
+    lines.x.push(u, u + zoom * du, null);
+    lines.y.push(v, v + zoom * dv, null);
     ends.x.push(u);
     ends.y.push(v);
   }
@@ -163,14 +165,14 @@ function heldOut(data) {
   if (data.residuals.length === 0) return;
   const spread = Math.max(0.5 * c.pixel_spread_before, 1e-3);
   const zoom = Math.min(Math.max(Math.round(10 / spread), 1), 200);
-  const arrows = block(element, 'Mean residuals over the image',
-      `Enlarged ${zoom} times. Arrows that depend on the place are an error of the lens.`);
+  const arrows = block(element, 'Residuals over the image',
+      `Medians, enlarged ${zoom} times. Arrows that depend on the place are an error of the lens.`);
   const pair = make('div', {class: 'pair'});
   arrows.append(pair);
   CAMERAS.forEach((camera, k) => {
     const half = make('div', {}, make('h3', {}, 'Residuals ' + camera.name));
     pair.append(half);
-    plot('arrows-' + k, 'small', half, meanResiduals(data, camera, zoom), {
+    plot('arrows-' + k, 'small', half, cellResiduals(data, camera, zoom), {
       showlegend: false, hovermode: false,
       xaxis: axis('column (px)', {range: [0, data.width]}),
       yaxis: axis('row (px)', {range: [data.height, 0], scaleanchor: 'x'}),

@@ -198,8 +198,9 @@ function table(head, rows, className) {
     if (label) attributes['data-label'] = label;
     const text = number ? content.number
         : typeof content === 'object' ? content.text : content;
+    const isLink = typeof content === 'object' && content.link;
     return make(tag, attributes,
-        content.link ? make('a', {href: encodeURI(content.link)}, text) : text);
+        isLink ? make('a', {href: encodeURI(content.link)}, text) : text);
   };
   return make('div', {class: 'scroll'}, make('table', {class: className || ''},
       make('thead', {}, make('tr', {}, ...head.map(h => cell('th', h)))),

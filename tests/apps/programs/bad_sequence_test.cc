@@ -267,6 +267,9 @@ TEST_F(BadInputTest, Lists) {
            "", 2,
            kRgb + ":3: time stamp 1305031102175304000 is not in "
                   "seconds"},
+          {"intervals for times",
+           Text("rgb.txt", "0.033 a\n0.034 b\n0.033 c\n0.033 d\n"), "", 2,
+           kRgb + ":3: the times look like intervals between images"},
           {"time goes backwards", Swap("rgb.txt", "1000.1", "999.1"), "", 2,
            kRgb + ":5: the time stamp is earlier than the previous one"},
           {"no depth image near", Text("depth.txt", "5 depth/x.png\n"), "", 2,

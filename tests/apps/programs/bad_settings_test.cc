@@ -30,14 +30,15 @@ TEST_F(BadInputTest, Cameras) {
   ExpectEach(
       Odometry(),
       {
-          {"neither file nor preset", nullptr, "--camera=kinect", 2,
-           "camera 'kinect' is neither a file nor one of the presets: tum_fr1"},
+          {"neither file nor preset", nullptr, "--camera=kinnect", 2,
+           "camera 'kinnect' is neither a file nor one of the presets: "
+           "tum_fr1"},
           {"a folder", nullptr, "--camera={seq}", 2, "{seq}: is a folder"},
           {"empty", [](const Seq& s) { s.Write("camera.yaml", ""); }, "", 2,
            kFile + ": contains no camera; supported layouts are ORB-SLAM"},
           {"no focal length", Camera("Camera.fx: 262\n", ""), "", 2,
            "Camera.fx is missing"},
-          {"negative focal length", Camera("fy: 262", "fy: -262"), "", 2,
+          {"negative focal length", Camera("fx: 262", "fx: -262"), "", 2,
            kFile + ": fx and fy must be positive"},
           {"zero focal length", Camera("fx: 262", "fx: 0"), "", 2,
            kFile + ": fx and fy must be positive"},

@@ -110,6 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
         GoodFile{"RosWithDepthScale",
                  std::string(kRos) + "DepthMapFactor: 1000\n", kRosCamera,
                  1000.0},
+        GoodFile{"Open3d",
+                 R"({"width": 640, "height": 480, "depth_scale": 1000,
+                     "intrinsic_matrix": [525, 0, 0, 0, 526, 0, 319, 240, 1]})",
+                 {640, 480, 525, 526, 319, 240},
+                 1000.0},
         GoodFile{"Kalibr", kKalibr, kKalibrCamera, 5000.0}),
     [](const auto& info) { return info.param.name; });
 

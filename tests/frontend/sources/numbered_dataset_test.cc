@@ -210,36 +210,65 @@ TEST_F(NumberedDatasetTest, ReadsOpen3d) {
                           Options().path + "/camera_intrinsic.json");
   EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fy, 31.0);
   // Files that contain no valid camera.
-  for (const char* wrong : {"-30, 0, 0, 0, 31, 0, 15.5, 11.5, 1]}",
-                            "30, 0, 0, 0, 31, 0, 15.5, 11.5, 1], "
-                            "\"depth_scale\": 0}"}) {
+  for (const auto& [wrong, problem] :
+       {std::pair("-30, 0, 0, 0, 31, 0, 15.5, 11.5, 1]}",
+                  "fx and fy must be positive"),
+        {"30, 0, 0, 0, 31, 0, 15.5, 11.5, 1], \"depth_scale\": 0}",
+         "depth_scale must be raw depth units per metre"}}) {
     WriteText("camera_intrinsic.json",
               std::string(R"({"width": 32, "height": 24,
                               "intrinsic_matrix": [)") +
                   wrong);
     ExpectInputError([&] { OpenSource("auto", Options()); },
-                     {"invalid camera: ", "must be", "positive"});
+                     {"camera_intrinsic.json", problem});
   }
 }
 
-TEST_F(NumberedDatasetTest, MirrorsIclNuim) {
-  WriteText("associations.txt", "0 depth/0.png 0 rgb/0.png\n");
+TEST_F(NumberedDatasetTest, ReadsImagesBesideEachOther) {
   for (int k = 0; k < kFrames; ++k) {
-    const std::string number = std::to_string(k);
-    Write("rgb/" + number + ".png", ColorImage(k));
-    Write("depth/" + number + ".png", DepthImage(k));
+    const std::string number = "0000" + std::to_string(k);
+    Write("frame_" + number + "_rgb.png", ColorImage(k));
+    Write("frame_" + number + "_depth.png", DepthImage(k));
   }
-  // A quarter turn around x in the mirrored world has the opposite direction.
-  WriteText("livingRoom0.gt.freiburg",
-            "1 0.1 0.2 0.3 0.70710678 0 0 0.70710678\n"
-            "2 0 1 0 0 0 0 1\n");
-  const auto source = ExpectRead("icl_nuim", WithCamera(), 5000.0);
-  const Trajectory truth = source->ground_truth();
-  ASSERT_EQ(truth.size(), 2u);
-  const Eigen::Vector3d moved =
-      truth[0].world_from_cam * Eigen::Vector3d(0.0, 0.0, 1.0);
-  EXPECT_LT((moved - Eigen::Vector3d(0.1, 0.8, 0.3)).norm(), 1e-6);
-  EXPECT_NEAR(truth[1].timestamp, 1 / 30.0, 1e-12);
+  ExpectInputError([this] { OpenSource("auto", Options()); },
+                   {folder_.path(), "contains no camera calibration",
+                    "--camera", "presets tum_fr1, tum_fr2"});
+  WriteText("camera-intrinsics.txt", "30 0 15.5\n0 31 11.5\n0 0 1\n");
+  const auto source = ExpectRead("frame_pairs", Options(), 1000.0);
+  EXPECT_EQ(source->camera().camera.fy, 31.0);
+  EXPECT_EQ(source->camera().camera.width, kWidth);
+}
+
+TEST_F(NumberedDatasetTest, TakesTimesWhereTheyLie) {
+  WriteSevenScenes();
+  EXPECT_NE(OpenSource("auto", WithCamera())
+                ->remarks()
+                .front()
+                .find("30 frames per second are assumed"),
+            std::string::npos);
+  fs::remove(folder_ / ("frame-" + Padded(0) + ".depth.png"));
+  WriteText("timestamps.txt", "0 10.0\n1 10.05\n2 10.1\n");
+  const auto source = OpenSource("auto", WithCamera());
+  EXPECT_EQ(source->timestamps(), (std::vector<double>{10.05, 10.1}));
+  EXPECT_EQ(source->ground_truth().front().timestamp, 10.05);
+  EXPECT_TRUE(source->remarks().empty());
+  WriteText("timestamps.txt", "10.0\n10.05\n");
+  ExpectInputError([this] { OpenSource("auto", WithCamera()); },
+                   {"timestamps.txt: has 2 times, but there are 3 colour"});
+  WriteText("timestamps.txt", "10.0\n10.05\n10.05\n");
+  ExpectInputError([this] { OpenSource("auto", WithCamera()); },
+                   {"timestamps.txt:3: the time is not after"});
+}
+
+// All recordings of 7-Scenes are of a Kinect, whose rows are read one by one.
+TEST_F(NumberedDatasetTest, KnowsTheShutterOfSevenScenes) {
+  WriteSevenScenes();
+  EXPECT_EQ(OpenSource("auto", WithCamera())->camera().color_shutter.readout,
+            0.028);
+  SourceOptions options = WithCamera();
+  options.camera->color_shutter.is_known = true;  // none, as its file says
+  EXPECT_EQ(OpenSource("auto", options)->camera().color_shutter.readout, 0.0);
+  EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fx, 585.0);
 }
 
 TEST_F(NumberedDatasetTest, LeavesOutWhatHasNoPartner) {
@@ -263,11 +292,6 @@ TEST_F(NumberedDatasetTest, TakesADepthScaleThatIsAskedFor) {
 
 TEST_F(NumberedDatasetTest, RefusesWhatCannotBeUsed) {
   WriteSevenScenes();
-  const auto refuses = [this](const std::vector<std::string>& parts) {
-    ExpectInputError([this] { OpenSource("auto", Options()); }, parts);
-  };
-  refuses({folder_.path(), "contains no camera calibration", "--camera",
-           "presets tum_fr1, tum_fr2"});
   ExpectInputError([this] { OpenSource("scannet", WithCamera()); },
                    {folder_.path(), "no colour images", "color/123.jpg"});
   const auto expect_bad_pose = [this](const std::string& text,

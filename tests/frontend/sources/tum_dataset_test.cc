@@ -38,6 +38,16 @@ TEST_F(TumDatasetTest, AssociatesTheListsItself) {
   EXPECT_EQ(dataset->camera().camera.width, kWidth);
 }
 
+TEST_F(TumDatasetTest, AssociationsAloneAreEnough) {
+  std::filesystem::remove(folder_ / "rgb.txt");
+  std::filesystem::remove(folder_ / "depth.txt");
+  folder_.Write("associations.txt",
+                "1.00 rgb/0.png 1.005 depth/0.png\n"
+                "1.04 rgb/1.jpg 1.039 depth/1.png\n"
+                "1.10 rgb/3.png 1.11 depth/3.png\n");
+  ExpectFrames(*OpenTum(options_));
+}
+
 TEST_F(TumDatasetTest, TakesTheTimeDifferenceFromItsOptions) {
   options_.max_time_difference = 0.002;
   const auto dataset = OpenTum(options_);
