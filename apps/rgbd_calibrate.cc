@@ -16,7 +16,10 @@
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
 DEFINE_bool(report, true, "write OUTPUT/report.html");
-DEFINE_string(output, "", "folder for the results, new or of an earlier run");
+DEFINE_string(
+    output, "",
+    "folder for the results, new or of an earlier run; empty: a new one, "
+    "runs/NAME of the recording");
 
 namespace rgbd_pose {
 namespace {
@@ -29,14 +32,15 @@ struct ProgramSettings {
 };
 
 ProgramInfo Info(ProgramSettings* settings) {
-  return {
-      "rgbd_calibrate",
-      "calibrates an RGB-D camera from its own recording.",
-      "rgbd_calibrate --dataset=my_recording --camera=my_camera.yaml "
-      "--output=calibration",
-      {{"Run", {"output", "report", "threads"}}},
-      {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
-       SettingTable(&settings->slam), SettingTable(&settings->calibration)}};
+  return {"rgbd_calibrate",
+          "calibrates an RGB-D camera from its own recording.",
+          "rgbd_calibrate my_recording --camera=my_camera.yaml "
+          "--output=calibration",
+          {{"Run", {"output", "report", "threads"}}},
+          {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
+           SettingTable(&settings->slam), SettingTable(&settings->calibration)},
+          {},
+          /*has_default_output=*/true};
 }
 
 std::string FormatResiduals(const CalibrationResult& result) {
@@ -51,7 +55,6 @@ std::string FormatResiduals(const CalibrationResult& result) {
 
 int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.sequence.dataset);
-  RequireFlag("output", FLAGS_output);
   const int threads = NumThreads(FLAGS_threads);
 
   // Check the input before anything is created.

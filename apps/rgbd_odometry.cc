@@ -24,11 +24,12 @@ namespace {
 ProgramInfo Info(RunSettings* settings) {
   return {"rgbd_odometry",
           "estimates the motion of an RGB-D camera along a sequence.",
-          "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
-          "--output=runs/fr1_xyz",
+          "rgbd_odometry rgbd_dataset_freiburg1_xyz --camera=tum_fr1",
           {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}}},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
-           SettingTable(&settings->output), SettingTable(&settings->view)}};
+           SettingTable(&settings->output), SettingTable(&settings->view)},
+          {},
+          /*has_default_output=*/true};
 }
 
 int ValidateOnly(const Sequence& sequence, int threads) {
@@ -61,7 +62,6 @@ int ValidateOnly(const Sequence& sequence, int threads) {
 int Main(const RunSettings& settings, const ProgramInfo& info) {
   const auto start = std::chrono::steady_clock::now();
   RequireFlag("dataset", settings.sequence.dataset);
-  if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
 
   // Check the input before the work starts and before anything is written.

@@ -49,12 +49,14 @@ ProgramInfo Info(ProgramSettings* settings) {
   return {"rgbd_slam",
           "estimates the path of an RGB-D camera and builds a map with loop "
           "closures.",
-          "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
-          "--output=runs/fr1_room --save_map=maps/room",
+          "rgbd_slam rgbd_dataset_freiburg1_room --camera=tum_fr1 "
+          "--save_map=maps/room",
           {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}}},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
            SettingTable(&settings->slam), MapTable(settings),
-           SettingTable(&settings->output), SettingTable(&settings->view)}};
+           SettingTable(&settings->output), SettingTable(&settings->view)},
+          {},
+          /*has_default_output=*/true};
 }
 
 void LoadMaps(const ProgramSettings& settings, Slam* slam) {
@@ -104,7 +106,6 @@ std::optional<RecordingCalibration> Calibrate(const ProgramSettings& settings,
 int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const auto start = std::chrono::steady_clock::now();
   RequireFlag("dataset", settings.sequence.dataset);
-  RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
 
   // Check the input before the work starts and before anything is written.

@@ -55,7 +55,10 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
 std::vector<Setting> SettingTable(RunOutputSettings* settings) {
   constexpr std::string_view kGroup = "Output";
   return {
-      {"output", kGroup, "folder for the results, created if missing",
+      {"output", kGroup,
+       "folder for the results, created if missing; empty: a new one, "
+       "runs/NAME "
+       "of the recording",
        &settings->output},
       {"debug_images", kGroup,
        "frames for which OUTPUT/debug gets images of the matches, coloured by "

@@ -125,11 +125,51 @@ void PrintHelp(const ProgramInfo& info) {
       std::printf("      one of: %s\n", Join(choices, " ").c_str());
     }
   }
+  gflags::CommandLineFlagInfo flag;
+  if (gflags::GetCommandLineFlagInfo("dataset", &flag)) {
+    std::printf("\nA recording may be the first word, without --dataset=.\n");
+  }
   std::printf(
       "\nAlso: --flagfile=FILE reads flags from a file, --help, --version.\n"
       "Exit codes: 0 ok, 1 usage, 2 bad input, 3 tracking failed, 4 some batch "
       "items failed, 5 no better camera found,\n"
       "6 stopped early: results so far are kept.\n");
+}
+
+// The words of the command line; a recording that begins them is --dataset.
+std::vector<std::string> Words(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  gflags::CommandLineFlagInfo flag;
+  const bool is_recording = !words.empty() && !words[0].empty() &&
+                            words[0][0] != '-' &&
+                            gflags::GetCommandLineFlagInfo("dataset", &flag);
+  if (is_recording) words[0].insert(0, "--dataset=");
+  return words;
+}
+
+// "runs/NAME" or the first of runs/NAME-2, runs/NAME-3, ... that is not there.
+std::string NewOutput(const std::string& dataset) {
+  namespace fs = std::filesystem;
+  fs::path recording = fs::absolute(dataset).lexically_normal();
+  if (!recording.has_filename()) recording = recording.parent_path();
+  std::error_code error;
+  const fs::path name = fs::is_directory(recording, error)
+                            ? recording.filename()
+                            : recording.stem();
+  const std::string first = (fs::path("runs") / name).string();
+  std::string output = first;
+  for (int i = 2; PathExists(output); ++i) {
+    output = first + "-" + std::to_string(i);
+  }
+  return output;
+}
+
+void SetDefaultOutput() {
+  std::string dataset, output;
+  gflags::GetCommandLineOption("dataset", &dataset);
+  gflags::GetCommandLineOption("output", &output);
+  if (dataset.empty() || !output.empty()) return;
+  gflags::SetCommandLineOption("output", NewOutput(dataset).c_str());
 }
 
 }  // namespace
@@ -148,7 +188,8 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
     }
   }
   try {
-    ReadFlags({argv + 1, argv + argc});
+    ReadFlags(Words(argc, argv));
+    if (info.has_default_output) SetDefaultOutput();
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
     // Ignored: exceeding a file size limit is then reported like a full disk.

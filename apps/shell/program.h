@@ -38,11 +38,15 @@ struct ProgramInfo {
   std::vector<std::vector<Setting>> settings = {};
   // Flags of the groups whose value is one of a list of names.
   std::map<std::string, std::vector<std::string>> choices = {};
+  // Whether --output, if it is not given, is runs/NAME, with the recording's
+  // name and, if that exists, a number.
+  bool has_default_output = false;
 };
 
 // Runs a program: handles --help and --version, reads the flags into the
-// settings, initialises logging to stderr and calls `body`. A bad flag or an
-// InputError of `body` becomes one line on stderr and exit code 2.
+// settings, initialises logging to stderr and calls `body`. A first word that
+// is no flag is the value of --dataset. A bad flag or an InputError of `body`
+// becomes one line on stderr and exit code 2.
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
 

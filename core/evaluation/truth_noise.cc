@@ -29,11 +29,12 @@ TruthNoise ParseLine(const std::vector<std::string>& words,
 }  // namespace
 
 std::string TruthNoise::InWords() const {
-  if (origin.empty()) return "assumed exact";
-  if (translation == 0.0 && rotation == 0.0) return "exact, " + origin;
-  return Format("sigma %g mm, %g deg, ", translation * kMillimetresPerMetre,
+  if (translation == 0.0 && rotation == 0.0) {
+    return origin.empty() ? "assumed exact" : "exact, " + origin;
+  }
+  return Format("sigma %g mm, %g deg", translation * kMillimetresPerMetre,
                 rotation * kDegreesPerRadian) +
-         origin;
+         (origin.empty() ? "" : ", " + origin);
 }
 
 TruthNoise ReadTruthNoise(const std::string& path) {

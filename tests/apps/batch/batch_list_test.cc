@@ -107,7 +107,7 @@ TEST_F(BatchListTest, BadLinesAreNamed) {
   ExpectRefused("../data/file\n", {"list.txt:1", "data/file"});
   ExpectRefused("../data/x*\n", {"list.txt:1", "x*"});
   ExpectRefused("../data/a tum_fr1 5\n", {"list.txt:1", "has 3"});
-  ExpectRefused("../data/a kinect\n", {"list.txt:1", "kinect", "tum_fr1"});
+  ExpectRefused("../data/a kinnect\n", {"list.txt:1", "kinnect", "tum_fr1"});
   ExpectRefused("../other/a\n", {"list.txt:1", "other/a/camera.yaml"});
   ExpectRefused("../data/a\n\n../other/a tum_fr1\n",
                 {"list.txt:3", "'a'", "line 1"});

@@ -109,6 +109,19 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
             0.005);
 }
 
+TEST_F(OdometryProgramTest, ARecordingAsTheFirstWordIsEnough) {
+  const std::string run =
+      "cd " + folder_.path() + " && " + kTracker + " sequence --noreport";
+  for (const std::string output : {"runs/sequence", "runs/sequence-2"}) {
+    ASSERT_EQ(Run(run).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / (output + "/metrics.json")));
+    EXPECT_THAT(ReadTextFile(folder_ / (output + "/config.flags")),
+                HasSubstr("--output=" + output + "\n"));
+  }
+  EXPECT_THAT(Run(kTracker + " sequence more").err,
+              HasSubstr("'more' is not a flag"));
+}
+
 // As the report says: where the run was started.
 TEST_F(OdometryProgramTest, RepeatsARunWithRelativePaths) {
   const std::string in_folder = "cd " + folder_.path() + " && ";

@@ -96,7 +96,7 @@ TEST(CameraTest, DoubtsExchangedNumbers) {
 }
 
 TEST(CameraTest, UnknownPresetIsEmpty) {
-  EXPECT_FALSE(CameraPreset("kinect").has_value());
+  EXPECT_FALSE(CameraPreset("lidar").has_value());
   EXPECT_TRUE(CameraPreset("tum_fr3").has_value());
 }
 

@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
                 Replace(kOrbSlam2, "516.5", "[516.5]"),
                 {"yaml:5:", "Camera.fy"}},
         BadFile{
-            "NegativeFocalLength", Replace(kOrbSlam2, "516.5", "-480"), {"fy"}},
+            "NegativeFocalLength", Replace(kOrbSlam2, "517.3", "-480"), {"fx"}},
         BadFile{"PrincipalPointOutside",
                 Replace(kOrbSlam2, "318.6", "3186"),
                 {"principal point"}},
@@ -331,10 +331,10 @@ TEST(CameraKeysTest, OfOthersAreNamedUnlessProgramsOfTheLayoutHaveThem) {
       "Camera.newWidth: 600\nCamera.newHeight: 350\nStereo.b: 0.07\n";
   EXPECT_EQ(ReadCameraText(kOrbSlam2 + of_orb_slam, "a.yaml").remark, "");
   EXPECT_EQ(ReadCameraText(
-                std::string(kOrbSlam2) + "Camera.id: 3\ndepth_scale: 1000\n",
+                std::string(kOrbSlam2) + "Camera.id: 3\ndepth_unit: 1000\n",
                 "a.yaml")
                 .remark,
-            "a.yaml: unknown keys, which are not read: Camera.id, depth_scale");
+            "a.yaml: unknown keys, which are not read: Camera.id, depth_unit");
   // A key at the wrong place.
   EXPECT_EQ(ReadCameraText(Replace(kKalibr, "  rostopic",
                                    "  color_readout: 0.02\n  rostopic"),
