@@ -3,109 +3,32 @@
 #include <ceres/crs_matrix.h>
 
 #include <cmath>
-#include <utility>
 
+#include "core/factors/factor.h"
+#include "core/factors/pose_manifold.h"
+#include "core/factors/relative_pose.h"
 #include "core/pose_graph/spanning_tree.h"
 
 namespace rgbd_pose {
-namespace {
 
-// The rotation about the axes of the camera (rad) caused by small changes of
-// the angles (rad) at x: the columns of d omega / d[alpha beta gamma].
-Eigen::Matrix3d EulerRates(const double* x) {
-  const double sb = std::sin(x[1]), cb = std::cos(x[1]);
-  const double sg = std::sin(x[2]), cg = std::cos(x[2]);
-  Eigen::Matrix3d axes;
-  axes << cb * cg, -sg, 0, cb * sg, cg, 0, -sb, 0, 1;
-  return axes;
-}
-
-}  // namespace
-
-MotionMatrix SqrtInformation(const MotionMatrix& information) {
-  MotionMatrix none = MotionMatrix::Constant(NAN);
-  if (!information.allFinite()) return none;
-  // Scaled first: rotation and translation differ by orders of magnitude.
-  const MotionVector size =
-      information.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
-          [](double value) { return value > 0.0 ? value : 1.0; });
-  const auto eigen = EigenOf(size.cwiseInverse().asDiagonal() * information *
-                             size.cwiseInverse().asDiagonal());
-  // Rounding changes zero eigenvalues by about 1e-16.
-  if (eigen.eigenvalues().minCoeff() < -1e-9) return none;
-  return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         eigen.eigenvectors().transpose() * size.asDiagonal();
-}
-
-MotionVector RelativePoseErrorTerm::ResidualAt(
-    const RotationAndCenter<double>& motion, PosePairJacobian* jacobian) const {
-  Eigen::Quaterniond q(motion.R * measured.R.transpose());
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  MotionVector e;
-  e << 2.0 * q.vec(), motion.C - measured.C;
-  if (jacobian != nullptr) {
-    // Exp(omega) q changes 2 vec q by w omega + omega x vec q.
-    const Eigen::Matrix3d by_omega =
-        q.w() * Eigen::Matrix3d::Identity() - CrossMatrix(q.vec());
-    PosePairJacobian de = *jacobian;
-    de.topRows<3>() = by_omega * jacobian->topRows<3>();
-    jacobian->noalias() = root * de;
-  }
-  return root * e;
-}
-
-RotationAndCenter<double> MotionBetween(const RotationAndCenter<double>& ref,
-                                        const RotationAndCenter<double>& cur,
-                                        PosePairJacobian* jacobian) {
-  const RotationAndCenter<double> motion = {cur.R * ref.R.transpose(),
-                                            ref.R * (cur.C - ref.C)};
-  jacobian->setZero();
-  jacobian->block<3, 3>(0, 0) = -motion.R;
-  jacobian->block<3, 3>(0, 6).setIdentity();
-  jacobian->block<3, 3>(3, 0) = -CrossMatrix(motion.C);
-  jacobian->block<3, 3>(3, 3) = -ref.R;
-  jacobian->block<3, 3>(3, 9) = ref.R;
-  return motion;
-}
-
-bool EdgeBlock::Evaluate(double const* const* parameters, double* residuals,
-                         double** jacobians) const {
-  PosePairJacobian jacobian;
-  const RotationAndCenter<double> motion = MotionBetween(
-      ref_->PoseAt(parameters[0]), cur_->PoseAt(parameters[1]), &jacobian);
-  for (int pose = 0; pose < 2; ++pose) {
-    jacobian.middleCols<3>(6 * pose) *= EulerRates(parameters[pose]);
-  }
-  Eigen::Map<MotionVector>(residuals, 6) =
-      term_.ResidualAt(motion, jacobians != nullptr ? &jacobian : nullptr);
-  for (int pose = 0; jacobians != nullptr && pose < 2; ++pose) {
-    if (jacobians[pose] == nullptr) continue;
-    Eigen::Map<RowMajorBlock>(jacobians[pose], 6, 6) =
-        jacobian.middleCols<6>(6 * pose);
-  }
-  return true;
-}
-
-GraphProblem::GraphProblem(const GraphTerms& graph, double width)
-    : x_(graph.poses.size(), MotionVector::Zero()),
-      columns_(graph.poses.size(), -1) {
-  origins_.reserve(graph.poses.size());
-  for (const GraphTerms::Pose& pose : graph.poses) {
-    origins_.emplace_back(pose.world_from_cam.Inverse());
-  }
+GraphProblem::GraphProblem(const GraphTerms& graph, double width) {
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   // PoseGraph::Solve checks the input.
   options.disable_all_safety_checks = true;
   problem_ = std::make_unique<ceres::Problem>(options);
+  x_.reserve(graph.poses.size());  // must not move
   int columns = 0;
-  for (size_t i = 0; i < x_.size(); ++i) {
-    problem_->AddParameterBlock(x_[i].data(), 6);
-    if (graph.poses[i].is_fixed) {
-      problem_->SetParameterBlockConstant(x_[i].data());
+  auto* const manifold = new PoseManifold();
+  for (const GraphTerms::Pose& pose : graph.poses) {
+    double* const x = x_.emplace_back(PoseVectorOf(pose.world_from_cam)).data();
+    AddPose(x, problem_.get(), manifold);
+    if (pose.is_fixed) {
+      problem_->SetParameterBlockConstant(x);
+      columns_.push_back(-1);
     } else {
-      columns_[i] = columns;
-      columns += 6;
+      columns_.push_back(columns);
+      columns += PoseBlock::kTangent;
     }
   }
   for (const GraphTerms::Edge& edge : graph.edges) {
@@ -113,10 +36,17 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width)
     ceres::LossFunction* loss = nullptr;
     if (edge.loss != nullptr) loss = &losses_.emplace_back(edge.loss, width);
     problem_->AddResidualBlock(
-        new EdgeBlock({edge.cur_from_ref, edge.root}, &origins_[edge.ref],
-                      &origins_[edge.cur]),
-        loss, x_[edge.ref].data(), x_[edge.cur].data());
+        MakeFactor(RelativePoseFactor{edge.cur_from_ref, edge.root}), loss,
+        x_[edge.ref].data(), x_[edge.cur].data());
   }
+}
+
+double GraphProblem::norm() const {
+  double sum = 0.0;
+  for (size_t i = 0; i < x_.size(); ++i) {
+    if (columns_[i] >= 0) sum += x_[i].squaredNorm();
+  }
+  return std::sqrt(sum);
 }
 
 Eigen::SparseMatrix<double> GraphProblem::Information() {
@@ -148,24 +78,17 @@ MotionMatrix GraphProblem::CovarianceOf(const SparseInverse& inverse, int a,
 int GraphProblem::FindUndetermined(const GraphTerms& graph,
                                    double max_standard_deviation) {
   const double limit = max_standard_deviation * max_standard_deviation;
-  const auto poses_of = [&](const GraphTerms::Edge& edge) {
-    return std::pair(origins_[edge.ref].PoseAt(x_[edge.ref].data()),
-                     origins_[edge.cur].PoseAt(x_[edge.cur].data()));
-  };
   // First what an edge says by itself: that is at least as uncertain, and most
   // graphs need no more.
   std::vector<bool> is_determined;
-  PosePairJacobian jacobian;
+  MotionVector r;
+  RelativePoseFactor::ByPose by_ref, by_cur;
   for (const GraphTerms::Edge& edge : graph.edges) {
-    const auto [ref, cur] = poses_of(edge);
-    const RotationAndCenter<double> motion = MotionBetween(ref, cur, &jacobian);
-    jacobian.leftCols<6>().setIdentity();
-    const MotionVector r = RelativePoseErrorTerm(edge.cur_from_ref, edge.root)
-                               .ResidualAt(motion, &jacobian);
+    RelativePoseFactor{edge.cur_from_ref, edge.root}.Jacobian(
+        PoseAt(edge.ref), PoseAt(edge.cur), r.data(), &by_ref, &by_cur);
     double rho[3] = {0.0, 1.0, 0.0};
     if (edge.loss != nullptr) edge.loss->Evaluate(r.squaredNorm(), rho);
-    const MotionMatrix information =
-        rho[1] * jacobian.leftCols<6>().transpose() * jacobian.leftCols<6>();
+    const MotionMatrix information = rho[1] * by_cur.transpose() * by_cur;
     is_determined.push_back(EigenOf(information).eigenvalues()[0] * limit >= 1);
   }
   const int outside = FirstOutside(SpanningTree(graph, is_determined), graph);
@@ -179,16 +102,19 @@ int GraphProblem::FindUndetermined(const GraphTerms& graph,
   if (!inverse.is_valid()) return outside;
   for (size_t i = 0; i < graph.edges.size(); ++i) {
     if (is_determined[i]) continue;
-    const GraphTerms::Edge& edge = graph.edges[i];
-    const auto [ref, cur] = poses_of(edge);
-    MotionBetween(ref, cur, &jacobian);
+    const int ref = graph.edges[i].ref, cur = graph.edges[i].cur;
+    // The motion between the poses as a function of them.
+    const Rigid3d motion = WorldFromCam(cur).Inverse() * WorldFromCam(ref);
+    RelativePoseFactor{motion, MotionMatrix::Identity()}.Jacobian(
+        PoseAt(ref), PoseAt(cur), r.data(), &by_ref, &by_cur);
+    Eigen::Matrix<double, 6, 12> J;
+    J << by_ref, by_cur;
     Eigen::Matrix<double, 12, 12> covariance;
-    covariance << CovarianceOf(inverse, edge.ref, edge.ref),
-        CovarianceOf(inverse, edge.ref, edge.cur),
-        CovarianceOf(inverse, edge.cur, edge.ref),
-        CovarianceOf(inverse, edge.cur, edge.cur);
-    is_determined[i] = EigenOf(jacobian * covariance * jacobian.transpose())
-                           .eigenvalues()[5] <= limit;
+    covariance << CovarianceOf(inverse, ref, ref),
+        CovarianceOf(inverse, ref, cur), CovarianceOf(inverse, cur, ref),
+        CovarianceOf(inverse, cur, cur);
+    is_determined[i] =
+        EigenOf(J * covariance * J.transpose()).eigenvalues()[5] <= limit;
   }
   return FirstOutside(SpanningTree(graph, is_determined), graph);
 }
@@ -201,7 +127,7 @@ std::vector<MotionMatrix> GraphProblem::MarginalCovariances(
   if (!inverse.is_valid()) return {};
   result.clear();
   for (const int pose : poses) {
-    result.push_back(CovarianceOf(inverse, pose, pose));
+    result.push_back(PoseCovariance(CovarianceOf(inverse, pose, pose)));
   }
   return result;
 }

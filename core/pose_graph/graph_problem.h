@@ -1,7 +1,6 @@
 #pragma once
 
 #include <ceres/problem.h>
-#include <ceres/sized_cost_function.h>
 
 #include <Eigen/SparseCore>
 #include <deque>
@@ -9,69 +8,13 @@
 #include <vector>
 
 #include "core/estimation/batch_loss.h"
-#include "core/geometry/motion.h"
+#include "core/factors/blocks.h"
 #include "core/pose_graph/pose_graph.h"
 #include "core/pose_graph/sparse_inverse.h"
 
-// The motion between two poses that are both estimated. A pose is itself a
-// motion, from the world to the camera, in the parameters of
-// core/geometry/motion.h about its own origin; C is the centre of the camera in
-// the world. Between the cameras `ref` and `cur`:
-//
-//   R = R_cur R_ref^T,   C = R_ref (C_cur - C_ref)
-
 namespace rgbd_pose {
 
-using PosePairJacobian = Eigen::Matrix<double, 6, 12, Eigen::RowMajor>;
-using RowMajorBlock = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
-// The motion from `ref` to `cur`, and d[omega C] / d[omega_ref C_ref omega_cur
-// C_cur]: omega of a pose is about the axes of its camera, C in the world.
-RotationAndCenter<double> MotionBetween(const RotationAndCenter<double>& ref,
-                                        const RotationAndCenter<double>& cur,
-                                        PosePairJacobian* jacobian);
-
-// S with S^T S = information; NaN if that is not positive semi-definite.
-MotionMatrix SqrtInformation(const MotionMatrix& information);
-
-// A measured motion between two poses as six rows,
-//
-//   r = S [ 2 vec q ; C - C_m ],   q the quaternion of R R_m^T,  q_w >= 0,
-//
-// with S^T S = covariance^-1. To first order, 2 vec q is omega in Exp(omega) =
-// R R_m^T; it increases up to half a turn, as omega does.
-struct RelativePoseErrorTerm {
-  RotationAndCenter<double> measured;
-  MotionMatrix root;  // S
-
-  RelativePoseErrorTerm(const Rigid3d& cur_from_ref, const MotionMatrix& S)
-      : measured{cur_from_ref.rotation.toRotationMatrix(),
-                 cur_from_ref.Inverse().translation},
-        root(S) {}
-
-  // Returns r. Turns `jacobian`, unless null, from d[omega C] / d[x_ref x_cur]
-  // into d r / d[x_ref x_cur]; omega is as in MotionEstimate.
-  MotionVector ResidualAt(const RotationAndCenter<double>& motion,
-                          PosePairJacobian* jacobian) const;
-};
-
-// An edge with its hand-written Jacobian. The origins must outlive it.
-class EdgeBlock final : public ceres::SizedCostFunction<6, 6, 6> {
- public:
-  EdgeBlock(const RelativePoseErrorTerm& term, const LinearizationPoint* ref,
-            const LinearizationPoint* cur)
-      : term_(term), ref_(ref), cur_(cur) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
- private:
-  const RelativePoseErrorTerm term_;
-  const LinearizationPoint* const ref_;
-  const LinearizationPoint* const cur_;
-};
-
-// A graph as one Ceres problem of six parameters per pose.
+// A graph as one Ceres problem: poses and RelativePoseFactors.
 class GraphProblem {
  public:
   // The losses on edges are widened by the factor `width`.
@@ -83,11 +26,10 @@ class GraphProblem {
   // Its cost is half the sum of squares under the losses.
   ceres::Problem* problem() { return problem_.get(); }
 
-  // The parameters of a pose, and the pose they describe.
-  const MotionVector& parameters(int pose) const { return x_[pose]; }
-  Rigid3d WorldFromCam(int pose) const {
-    return origins_[pose].CurFromPrev(x_[pose].data()).Inverse();
-  }
+  Rigid3d WorldFromCam(int pose) const { return RigidOf(x_[pose]); }
+
+  // Root of the sum of the squares of the numbers of all poses that are moved.
+  double norm() const;
 
   // A pose that is not determined by `graph`, from which this was made; -1 if
   // there is none. See PoseGraphOptions::max_standard_deviation.
@@ -102,11 +44,15 @@ class GraphProblem {
   // J^T J of all residuals under their losses, by the poses that are not fixed.
   Eigen::SparseMatrix<double> Information();
 
-  // The covariance between two poses, zero if one of them is fixed.
+  // The covariance between two poses in their tangents (PoseBlock), zero if one
+  // of them is fixed.
   MotionMatrix CovarianceOf(const SparseInverse& inverse, int a, int b) const;
 
-  std::vector<LinearizationPoint> origins_;
-  std::vector<MotionVector> x_;
+  PoseOf<double> PoseAt(int pose) const {
+    return PoseBlock::Read(x_[pose].data());
+  }
+
+  std::vector<PoseVector> x_;
   std::vector<int> columns_;  // of a pose: the first of six; -1: it is fixed
   std::deque<ScaledLoss> losses_;
   std::unique_ptr<ceres::Problem> problem_;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/factors/relative_pose.h"
+#include "core/factors/sqrt_information.h"
 #include "core/pose_graph/graph_problem.h"
 #include "core/pose_graph/spanning_tree.h"
 #include "core/util/format.h"
@@ -28,15 +30,11 @@ double FirstWidth(const GraphTerms& graph) {
   double largest = 0.0;
   for (const GraphTerms::Edge& edge : graph.edges) {
     if (edge.loss == nullptr || graph.IsIdle(edge.ref, edge.cur)) continue;
-    // The squared residual of the edge in sigmas.
-    const Rigid3d motion = graph.poses[edge.cur].world_from_cam.Inverse() *
-                           graph.poses[edge.ref].world_from_cam;
-    largest =
-        std::max(largest, RelativePoseErrorTerm(edge.cur_from_ref, edge.root)
-                              .ResidualAt({motion.rotation.toRotationMatrix(),
-                                           motion.Inverse().translation},
-                                          nullptr)
-                              .squaredNorm());
+    MotionVector r;
+    RelativePoseFactor{edge.cur_from_ref, edge.root}.Residual(
+        PoseFrom(graph.poses[edge.ref].world_from_cam),
+        PoseFrom(graph.poses[edge.cur].world_from_cam), r.data());
+    largest = std::max(largest, r.squaredNorm());
   }
   return std::clamp(std::sqrt(largest), 1.0, kWidest);
 }
@@ -98,10 +96,10 @@ double Round(double width, int max_iterations, const PoseGraphOptions& options,
   // Steps of Gauss and Newton, damped only where one does not reduce the cost:
   // any damping holds the long waves of a long path back.
   solver.initial_trust_region_radius = 1e16;
-  // Ceres drops the step that makes it stop. Hence a round, which begins at
-  // x = 0, moves nothing if and only if its first step is within the tolerance,
-  // or changes the cost by no more than rounding.
-  solver.parameter_tolerance = std::sqrt(options.step_tolerance);
+  // Ceres drops the step that makes it stop. Hence a round moves nothing if and
+  // only if its first step is within the tolerance, or changes the cost by no
+  // more than rounding. Ceres compares it with the size of all parameters.
+  solver.parameter_tolerance = options.step_tolerance / problem.norm();
   solver.function_tolerance = 1e-14;
   solver.gradient_tolerance = 0.0;
   ceres::Solver::Summary summary;
@@ -117,9 +115,11 @@ double Round(double width, int max_iterations, const PoseGraphOptions& options,
   double moved = 0.0;
   for (size_t i = 0; i < attempt->graph.poses.size(); ++i) {
     if (attempt->graph.poses[i].is_fixed) continue;
-    const int pose = static_cast<int>(i);
-    moved = std::max(moved, problem.parameters(pose).lpNorm<Eigen::Infinity>());
-    attempt->graph.poses[i].world_from_cam = problem.WorldFromCam(pose);
+    Rigid3d* const pose = &attempt->graph.poses[i].world_from_cam;
+    const Rigid3d before = *pose;
+    *pose = problem.WorldFromCam(static_cast<int>(i));
+    moved = std::max({moved, (before.Inverse() * *pose).Angle(),
+                      (pose->translation - before.translation).norm()});
   }
   return moved;
 }

@@ -38,7 +38,7 @@ struct PoseGraphOptions {
   // that may be far off. False: final widths at once.
   bool graduated = false;
 
-  // Maximum number of solves, each with the poses of the last one as origins.
+  // Maximum number of solves, each from the poses of the last one.
   // The last one needed moves nothing: that is how it is known to be the last.
   int max_rounds = 10;
 

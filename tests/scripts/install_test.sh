@@ -75,6 +75,7 @@ readonly examples=$work/examples/build
 check "$examples/estimate_motion" '^ok, 160 of 200 matches .* 0\.000 mm$'
 check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
 says '^back at the start within 0\.[0-9]+ mm$' own_cost
+check "$examples/own_problem" '^solved, a quarter is 90\.00 degrees$'
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
 check "$examples/map_loop" '^[1-9][0-9]* keyframes, .* within 0\.[0-9]+ mm$'
@@ -84,15 +85,18 @@ check "$examples/find_places" '^28 shows what 0 shows, from 0\.0[0-9] m away$'
 
 # A component only needs its own dependencies.
 project costs CXX REQUIRED COMPONENTS costs
-cp "$source/docs/examples/estimate_motion.cc" "$work/costs"
-printf '%s\n' 'add_executable(estimate_motion estimate_motion.cc)' \
-  'target_link_libraries(estimate_motion PRIVATE rgbd_pose::costs)' \
-  >>"$work/costs/CMakeLists.txt"
+for example in estimate_motion own_problem; do
+  cp "$source/docs/examples/$example.cc" "$work/costs"
+  printf '%s\n' "add_executable($example $example.cc)" \
+    "target_link_libraries($example PRIVATE rgbd_pose::costs)" \
+    >>"$work/costs/CMakeLists.txt"
+done
 configure "$work/costs" -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=TRUE \
   -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=TRUE ||
   fail "costs: find_package without OpenCV"
 cmake --build "$work/costs/build" >"$work/log" 2>&1 || fail "costs: build"
 check "$work/costs/build/estimate_motion" '^ok'
+check "$work/costs/build/own_problem" '^solved'
 
 # Unknown components and versions are refused with a message.
 project lidar NONE REQUIRED COMPONENTS core lidar

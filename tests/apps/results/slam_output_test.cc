@@ -15,7 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/pose_graph/graph_problem.h"
+#include "core/factors/relative_pose.h"
+#include "core/factors/sqrt_information.h"
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
 
@@ -227,12 +228,11 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     const G2oPose& j = graph.poses.at(1);
     const MotionVector e = graph.edges[0].error.Of(i.t, i.q, j.t, j.q);
 
-    const MotionVector r =
-        RelativePoseErrorTerm(edge.cur_from_ref,
-                              SqrtInformation(edge.covariance.inverse()))
-            .ResidualAt({motion.rotation.toRotationMatrix(),
-                         motion.Inverse().translation},
-                        nullptr);
+    MotionVector r;
+    RelativePoseFactor{edge.cur_from_ref,
+                       SqrtInformationOfCovariance(edge.covariance)}
+        .Residual(PoseFrom(map.keyframes[0].world_from_cam),
+                  PoseFrom(map.keyframes[1].world_from_cam), r.data());
     const double cost = (graph.edges[0].error.root * e).squaredNorm();
     EXPECT_NEAR(cost, r.squaredNorm(), 1e-6 * r.squaredNorm());
   }

@@ -6,7 +6,6 @@
 
 #include "core/pose_graph/graph_problem.h"
 #include "robust/m_estimator.h"
-#include "tests/support/edge_oracle.h"
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
 
@@ -65,34 +64,6 @@ TEST(PoseGraphTest, FixedPosesDoNotDiluteTheFactor) {
   ASSERT_EQ(twice.size(), 2u);
   EXPECT_EQ(twice[0], twice[1]);
   EXPECT_GT(twice[0](0, 0), 0.0);
-}
-
-TEST(EdgeBlockTest, JacobianIsThatOfTheOracle) {
-  RandomWorld world(3);
-  for (int trial = 0; trial < 50; ++trial) {
-    const LinearizationPoint ref(world.Motion(2.0, 2.0)),
-        cur(world.Motion(2.0, 2.0));
-    MotionVector x[2];
-    for (MotionVector& pose : x) {
-      pose << world.Vector(0.3), world.Vector(0.3);
-    }
-    MotionMatrix root;
-    for (double& value : root.reshaped()) value = world.Uniform(-1.0, 1.0);
-    const Rigid3d measured = ref.CurFromPrev(x[0].data()).Inverse();
-    const RelativePoseErrorTerm term(
-        cur.CurFromPrev(x[1].data()) * measured * world.Motion(2.0, 1.0), root);
-    const auto oracle = MakeEdgeOracle(term, &ref, &cur);
-    const double* at[] = {x[0].data(), x[1].data()};
-    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> hand[2], jet[2];
-    double* by_hand[] = {hand[0].data(), hand[1].data()};
-    double* by_jet[] = {jet[0].data(), jet[1].data()};
-    MotionVector r, r_jet;
-    ASSERT_TRUE(EdgeBlock(term, &ref, &cur).Evaluate(at, r.data(), by_hand));
-    ASSERT_TRUE(oracle->Evaluate(at, r_jet.data(), by_jet));
-    EXPECT_LT((r - r_jet).norm(), 1e-12);
-    EXPECT_LT((hand[0] - jet[0]).norm(), 1e-11);
-    EXPECT_LT((hand[1] - jet[1]).norm(), 1e-11);
-  }
 }
 
 TEST(PoseGraphTest, ExactEdgesBringPosesBack) {

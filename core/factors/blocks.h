@@ -1,0 +1,172 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <string>
+
+#include "core/factors/sampler.h"
+#include "core/geometry/rigid3.h"
+
+// The parameter blocks of factors (core/factors/factor.h), as Ceres has them.
+//
+// A Jacobian by hand is taken in the tangent of a block: by small changes that
+// are free of constraints. For a pose they are [omega p]: omega (rad) turns the
+// body about its own axes, p (m) moves it along the axes of the world,
+//
+//   R(omega) = R Exp(omega),   position(p) = position + p.
+//
+// Lift turns such a Jacobian into one by the numbers of the block, which Ceres
+// expects. It is exact under any manifold of unit quaternions, PoseManifold or
+// Ceres' own.
+
+namespace rgbd_pose {
+
+// A Jacobian in the tangent of one block.
+template <int kRows, typename Block>
+using TangentJacobian = Eigen::Matrix<double, kRows, Block::kTangent>;
+
+// A pose as the numbers of its block.
+using PoseVector = Eigen::Matrix<double, 7, 1>;
+
+// world_from_body for any scalar (double or ceres::Jet).
+template <typename T>
+struct PoseOf {
+  Eigen::Quaternion<T> q;    // turns the body's axes into the world's
+  Eigen::Matrix<T, 3, 1> p;  // the body's origin in the world, m
+
+  // q as a matrix.
+  Eigen::Matrix<T, 3, 3> R() const { return q.toRotationMatrix(); }
+};
+
+// A pose, world_from_body, as [qx qy qz qw x y z]. A quaternion of any length
+// stands for the rotation of the unit quaternion along it.
+struct PoseBlock {
+  static constexpr char kName[] = "pose";
+  static constexpr int kSize = 7;
+  static constexpr int kTangent = 6;
+
+  template <typename T>
+  static PoseOf<T> Read(const T* x) {
+    return {Eigen::Quaternion<T>(x[3], x[0], x[1], x[2]).normalized(),
+            {x[4], x[5], x[6]}};
+  }
+
+  // d x / d[omega p] for a quaternion of length 1.
+  static Eigen::Matrix<double, 7, 6> PlusJacobian(const double* x) {
+    Eigen::Matrix<double, 7, 6> J = Eigen::Matrix<double, 7, 6>::Zero();
+    J.topLeftCorner<4, 3>() = 0.5 * HalfAngleJacobian(x);
+    J.bottomRightCorner<3, 3>().setIdentity();
+    return J;
+  }
+
+  // Writes kRows x 7 numbers, row by row.
+  template <int kRows>
+  static void Lift(const TangentJacobian<kRows, PoseBlock>& by, const double* x,
+                   double* jacobian) {
+    const double squared = Eigen::Map<const Eigen::Vector4d>(x).squaredNorm();
+    Eigen::Map<Eigen::Matrix<double, kRows, 7, Eigen::RowMajor>> J(jacobian);
+    // The pseudo-inverse of PlusJacobian: its columns are orthogonal.
+    J.template leftCols<4>().noalias() = by.template leftCols<3>() *
+                                         (2.0 / squared) *
+                                         HalfAngleJacobian(x).transpose();
+    J.template rightCols<3>() = by.template rightCols<3>();
+  }
+
+  // x moved by d[omega p].
+  static void Plus(const double* x, const double* d, double* moved) {
+    const PoseOf<double> pose = Read(x);
+    const Eigen::Quaterniond turn =
+        Rigid3d::FromRotationVector({d[0], d[1], d[2]}, {0, 0, 0}).rotation;
+    Eigen::Map<Eigen::Vector4d>(moved, 4) = (pose.q * turn).coeffs();
+    for (int i = 0; i < 3; ++i) moved[4 + i] = x[4 + i] + d[3 + i];
+  }
+
+  // The d[omega p] that moves x to y.
+  static Eigen::Matrix<double, 6, 1> Minus(const double* y, const double* x) {
+    const PoseOf<double> to = Read(y), from = Read(x);
+    Eigen::Matrix<double, 6, 1> d;
+    d << RotationVector(from.q.conjugate() * to.q), to.p - from.p;
+    return d;
+  }
+
+  // A direction of the tangent in words.
+  static std::string NameOf(int tangent) {
+    return (tangent < 3 ? "rotation about " : "position along ") +
+           std::string(1, "xyz"[tangent % 3]);
+  }
+
+  static PoseVector Random(FactorSampler* random) {
+    const Rigid3d pose = random->Motion();
+    PoseVector x;
+    x << pose.rotation.coeffs(), pose.translation;
+    return x;
+  }
+
+ private:
+  // d q / d(omega / 2) = q * (omega / 2, 0).
+  static Eigen::Matrix<double, 4, 3> HalfAngleJacobian(const double* q) {
+    Eigen::Matrix<double, 4, 3> J;
+    J << q[3], -q[2], q[1],  //
+        q[2], q[3], -q[0],   //
+        -q[1], q[0], q[3],   //
+        -q[0], -q[1], -q[2];
+    return J;
+  }
+};
+
+// A rigid motion as the numbers of its block, as what factors read, and back.
+inline PoseVector PoseVectorOf(const Rigid3d& world_from_body) {
+  PoseVector x;
+  x << world_from_body.rotation.coeffs(), world_from_body.translation;
+  return x;
+}
+inline PoseOf<double> PoseFrom(const Rigid3d& world_from_body) {
+  return {world_from_body.rotation, world_from_body.translation};
+}
+inline Rigid3d RigidOf(const PoseVector& pose) {
+  return Rigid3d(Eigen::Quaterniond(pose[3], pose[0], pose[1], pose[2]),
+                 pose.tail<3>());
+}
+
+// N numbers without constraints; they are their own tangent.
+template <int N>
+struct VectorBlock {
+  static constexpr char kName[] = "vector";
+  static constexpr int kSize = N;
+  static constexpr int kTangent = N;
+
+  template <typename T>
+  static Eigen::Matrix<T, N, 1> Read(const T* x) {
+    return Eigen::Map<const Eigen::Matrix<T, N, 1>>(x);
+  }
+
+  static Eigen::Matrix<double, N, N> PlusJacobian(const double* /*x*/) {
+    return Eigen::Matrix<double, N, N>::Identity();
+  }
+
+  template <int kRows>
+  static void Lift(const Eigen::Matrix<double, kRows, N>& by,
+                   const double* /*x*/, double* jacobian) {
+    for (int row = 0; row < kRows; ++row) {
+      for (int k = 0; k < N; ++k) jacobian[row * N + k] = by(row, k);
+    }
+  }
+
+  static void Plus(const double* x, const double* d, double* moved) {
+    for (int k = 0; k < N; ++k) moved[k] = x[k] + d[k];
+  }
+
+  static std::string NameOf(int k) { return "number " + std::to_string(k); }
+
+  static Eigen::Matrix<double, N, 1> Random(FactorSampler* random) {
+    return random->Vector<N>(1.0);
+  }
+};
+
+// The blocks of a factor, in their order.
+template <typename... Blocks>
+struct BlockList {
+  static constexpr int kCount = sizeof...(Blocks);
+};
+
+}  // namespace rgbd_pose

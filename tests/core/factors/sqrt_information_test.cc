@@ -1,0 +1,40 @@
+#include "core/factors/sqrt_information.h"
+
+#include <gtest/gtest.h>
+
+#include "core/factors/sampler.h"
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+TEST(SqrtInformationTest, GivesTheInformationBack) {
+  FactorSampler random(3);
+  MotionMatrix half;
+  for (int i = 0; i < 6; ++i) half.col(i) = random.Vector<6>(1.0);
+  half.topRows<3>() *= 1e4;  // rad^-1 and m^-1
+  MotionMatrix information = half * half.transpose();
+  MotionMatrix root = SqrtInformation(information);
+  EXPECT_TRUE((root.transpose() * root).isApprox(information, 1e-12));
+
+  information.row(2).setZero();
+  information.col(2).setZero();
+  root = SqrtInformation(information);
+  EXPECT_TRUE((root.transpose() * root).isApprox(information, 1e-12));
+
+  information(2, 2) = -1.0;
+  EXPECT_TRUE(SqrtInformation(information).hasNaN());
+}
+
+TEST(SqrtInformationTest, OfACovarianceThatIsPositiveDefinite) {
+  FactorSampler random(4);
+  const Eigen::Matrix3d half = random.SqrtInformation<3>();
+  const Eigen::Matrix3d covariance = half * half.transpose();
+  const Eigen::Matrix3d S = SqrtInformationOfCovariance(covariance);
+  EXPECT_TRUE((S.transpose() * S * covariance).isIdentity(1e-12));
+  EXPECT_THROW(SqrtInformationOfCovariance(MotionMatrix::Zero()), InputError);
+  EXPECT_THROW(SqrtInformationOfCovariance(-covariance), InputError);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
