@@ -18,9 +18,9 @@ constexpr double kMinSlope = 0.2;
 // Quantised depths make slopes up to this much noisier than their model.
 constexpr double kSpuriousCostMargin = 6.0;
 
-// Measurements are rounded: depths of 1 to 4 m to 0.2 or 1 mm and corners to a
-// fiftieth of a pixel, which is about a twentieth of a sigma.
-constexpr double kRounding = 0.05;
+// The noise model counts as this many rows that scatter as it says: it is taken
+// to know variances to a factor of 1 +- sqrt(2 / 6).
+constexpr double kModelRows = 6.0;
 
 // Subtracts the spurious part from the information, which is zero, not
 // negative, in directions in which all of it is spurious.
@@ -51,35 +51,34 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse) {
   MotionMatrix A = MotionMatrix::Zero(), B = MotionMatrix::Zero();
-  MotionMatrix measured = MotionMatrix::Zero(), exact = MotionMatrix::Zero();
-  double weight_p = 0.0;
+  MotionMatrix exact = MotionMatrix::Zero();
   for (const CovarianceTerm& term : terms) {
     if (term.scale_group == MotionCost::kFixedScale) {
       exact += term.hessian;
       continue;
     }
     LossSums sums;
+    MotionMatrix group = MotionMatrix::Zero();
     for (const CovarianceTerm& other : terms) {
-      if (other.scale_group == term.scale_group) sums += other.sums;
+      if (other.scale_group != term.scale_group) continue;
+      sums += other.sums;
+      group += other.hessian;
     }
     if (!(sums.weight_p > 0.0)) continue;
-    const bool by_hessian = term.is_whitened ||
-                            sums.blocks < kMinBlocksForScatter ||
-                            sums.psi2 < sums.least_psi2;
-    const double psi2 = std::max(sums.psi2, sums.least_psi2);
-    B += by_hessian ? MotionMatrix(psi2 / sums.weight_p * term.hessian)
-                    : term.scatter;
+    const bool by_hessian =
+        term.is_whitened || sums.blocks < kMinBlocksForScatter;
+    // Six rows, less what priors and other groups determine, fit any motion.
+    const double fitted = (inverse * group).trace();
+    const double left = std::max(sums.weight_p - fitted, 0.0) + kModelRows;
+    const MotionMatrix one_row = 1.0 / sums.weight_p * term.hessian;
+    const MotionMatrix scatter =
+        by_hessian ? MotionMatrix(sums.psi2 * one_row) : term.scatter;
+    B += sums.weight_p / left * (scatter + kModelRows * one_row);
     A += std::max(sums.slope_p / sums.weight_p, kMinSlope) * term.hessian;
-    measured += term.hessian;
-    weight_p += term.sums.weight_p;
   }
-  // Six minus the parameters determined by a prior.
-  const double parameters = (inverse * measured).trace();
-  const double fitted =
-      weight_p > 2.0 * parameters ? weight_p / (weight_p - parameters) : 2.0;
   const MotionMatrix A_inverse =
       (A + exact).llt().solve(MotionMatrix::Identity());
-  return A_inverse * (fitted * B + exact) * A_inverse;
+  return A_inverse * (B + exact) * A_inverse;
 }
 
 void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
@@ -106,9 +105,6 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
       ++sums.blocks;
       const double limit = term.cost->is_whitened() ? ChiSquared99(p)
                                                     : term.cost->InlierLimit(k);
-      // The squared sigma in the unit of the residuals is limit / ChiSquared99.
-      sums.least_psi2 += information * weight * p * limit / ChiSquared99(p) *
-                         kRounding * kRounding / scale2;
       const bool agrees = s <= limit * scale2;
       const int match = term.cost->matches()[k];
       if (match < 0) {

@@ -17,14 +17,12 @@ struct LossSums {
   double weight_p = 0.0;  // rho' p
   double slope_p = 0.0;   // rho' p + 2 s rho''
   int blocks = 0;
-  double least_psi2 = 0.0;  // psi2 of residuals of the size of rounding errors
 
   LossSums& operator+=(const LossSums& other) {
     psi2 += other.psi2;
     weight_p += other.weight_p;
     slope_p += other.slope_p;
     blocks += other.blocks;
-    least_psi2 += other.least_psi2;
     return *this;
   }
 };
@@ -41,11 +39,16 @@ struct CovarianceTerm {
 // Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3). A is
 // the sum of the weighted Hessians, each times the ratio of the mean slope of
 // psi to the mean weight. B is the sum of the same Hessians, each times the
-// ratio of the mean of psi^2 to the mean weight, or, for costs that do not
-// whiten fully, of the scatter of their blocks, corrected for the fitted
-// parameters. Means are over a scale group. Residuals that are almost zero (a
-// frame against itself) do not prove a measurement to be better than its
-// rounding. The Hessian of exact sigmas (a prior) is added to A and B
+// variance of its rows in units of the noise model,
+//
+//   (sum of psi^2 + d0) / (sum of weights - fitted + d0),
+//
+// or, for costs that do not whiten fully, of the scatter of their blocks in
+// place of psi^2. Sums are over a scale group; `fitted` is its share of the six
+// parameters. The noise model counts as d0 = 6 rows (the moderated variance of
+// Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004): the residuals of few matches
+// are small because the motion is fitted to them, and those of a frame against
+// itself are zero. The Hessian of exact sigmas (a prior) is added to A and B
 // unchanged. `inverse` is the inverse of the sum of all Hessians.
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);

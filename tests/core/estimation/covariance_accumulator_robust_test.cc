@@ -35,53 +35,59 @@ MotionMatrix Covariance(const std::vector<CovarianceTerm>& terms) {
   return RobustCovariance(terms, sum.inverse());
 }
 
+// The variance of rows: the noise model counts as six that it predicts.
+double Spread(double psi2, double weight, double fitted = 6.0) {
+  return (psi2 + 6.0) / (std::max(weight - fitted, 0.0) + 6.0);
+}
+
 void ExpectNear(const MotionMatrix& a, const MotionMatrix& b) {
   EXPECT_TRUE(a.isApprox(b, 1e-9)) << a << "\n\n" << b;
 }
 
 TEST(RobustCovarianceTest, OfAWhitenedCost) {
   const CovarianceTerm term = Whitened(1.0);
-  const double fitted = 240.0 / (240.0 - 6.0);
-  const double psi2 = 270.0 / 240.0, slope = 180.0 / 240.0;
+  const double slope = 180.0 / 240.0;
   ExpectNear(Covariance({term}),
-             fitted * psi2 / (slope * slope) * term.hessian.inverse());
+             Spread(270.0, 240.0) / (slope * slope) * term.hessian.inverse());
 }
 
 // A vanishing slope must not make the covariance infinite.
 TEST(RobustCovarianceTest, TheSlopeIsAFifthOfTheWeightAtLeast) {
   CovarianceTerm term = Whitened(1.0);
   term.sums.slope_p = -10.0;
-  const double fitted = 240.0 / (240.0 - 6.0);
   ExpectNear(Covariance({term}),
-             fitted * 270.0 / 240.0 / (0.2 * 0.2) * term.hessian.inverse());
+             Spread(270.0, 240.0) / (0.2 * 0.2) * term.hessian.inverse());
 }
 
-// With few rows for six parameters, the correction factor is at most two.
-TEST(RobustCovarianceTest, FewRowsAreNotCorrectedWithoutBound) {
+// Six rows or fewer fit exactly, which says nothing about their noise.
+TEST(RobustCovarianceTest, FewRowsHaveTheVarianceOfTheNoiseModel) {
   CovarianceTerm term = Whitened(1.0);
-  for (const double rows : {5.0, 8.0, 12.0}) {
-    term.sums = {rows, rows, rows, 3};
-    ExpectNear(Covariance({term}), 2.0 * term.hessian.inverse());
+  for (const double rows : {3.0, 6.0}) {
+    term.sums = {0.0, rows, rows, 3};
+    ExpectNear(Covariance({term}), term.hessian.inverse());
   }
-  term.sums = {13.0, 13.0, 13.0, 3};
-  ExpectNear(Covariance({term}), 13.0 / 7.0 * term.hessian.inverse());
+  term.sums = {20.0, 8.0, 8.0, 3};
+  ExpectNear(Covariance({term}),
+             (20.0 + 6.0) / (2.0 + 6.0) * term.hessian.inverse());
 }
 
 TEST(RobustCovarianceTest, OfACostThatIsNotWhitenedByItsScatter) {
   CovarianceTerm term = Whitened(1.0);
   term.is_whitened = false;
   term.scatter = SomeHessian(7.0);
-  const double fitted = 240.0 / (240.0 - 6.0), slope = 180.0 / 240.0;
+  const double slope = 180.0 / 240.0;
   const MotionMatrix inverse = term.hessian.inverse();
+  const MotionMatrix scatter =
+      240.0 / 240.0 * (term.scatter + 6.0 / 240.0 * term.hessian);
   ExpectNear(Covariance({term}),
-             fitted / (slope * slope) * inverse * term.scatter * inverse);
+             1.0 / (slope * slope) * inverse * scatter * inverse);
   // The scatter of fewer than 30 blocks is too uncertain to be used.
   term.sums.blocks = 30;
   ExpectNear(Covariance({term}),
-             fitted / (slope * slope) * inverse * term.scatter * inverse);
+             1.0 / (slope * slope) * inverse * scatter * inverse);
   term.sums.blocks = 29;
   ExpectNear(Covariance({term}),
-             fitted * 270.0 / 240.0 / (slope * slope) * inverse);
+             Spread(270.0, 240.0) / (slope * slope) * inverse);
 }
 
 // The information of a prior is known: it is changed neither by losses nor by
@@ -95,9 +101,9 @@ TEST(RobustCovarianceTest, APriorCountsAsItIs) {
   const MotionMatrix inverse = (term.hessian + prior.hessian).inverse();
   const double parameters = (inverse * term.hessian).trace();
   EXPECT_LT(parameters, 5.0);
-  const double fitted = 240.0 / (240.0 - parameters);
   const MotionMatrix A = 180.0 / 240.0 * term.hessian + prior.hessian;
-  const MotionMatrix B = fitted * 270.0 / 240.0 * term.hessian + prior.hessian;
+  const MotionMatrix B =
+      Spread(270.0, 240.0, parameters) * term.hessian + prior.hessian;
   ExpectNear(Covariance({term, prior}), A.inverse() * B * A.inverse());
 }
 
@@ -109,9 +115,11 @@ TEST(RobustCovarianceTest, GroupsAreJudgedApart) {
   other.sums = {50.0, 100.0, 90.0, 40};
   other.scale_group = kGroup + 1;
   const MotionMatrix both = first.hessian + second.hessian;
-  const double fitted = 400.0 / (400.0 - 6.0);
+  const MotionMatrix inverse = (both + other.hessian).inverse();
+  const double fitted = (inverse * both).trace();
   const MotionMatrix A = 225.0 / 300.0 * both + 0.9 * other.hessian;
-  const MotionMatrix B = fitted * (300.0 / 300.0 * both + 0.5 * other.hessian);
+  const MotionMatrix B = Spread(300.0, 300.0, fitted) * both +
+                         Spread(50.0, 100.0, 6.0 - fitted) * other.hessian;
   ExpectNear(Covariance({first, second, other}), A.inverse() * B * A.inverse());
 }
 

@@ -122,8 +122,10 @@ MotionMatrix SomeMatrix(double seed, double size) {
   return size * root.transpose() * root;
 }
 
-// Mean psi^2 over mean weight, corrected for six parameters fitted to `blocks`.
-double Spread(int blocks) { return kSquaredNorm * blocks / (blocks - 6.0); }
+// The variance of rows, six of which are the noise model's, after a fit.
+double Spread(double blocks, double fitted) {
+  return (kSquaredNorm * blocks + 6.0) / (blocks - fitted + 6.0);
+}
 
 // The scale uses all rows of a block or none, for any number of blocks.
 TEST(RobustProblemTest, ScalesDoNotDependOnTheNumberOfResiduals) {
@@ -162,7 +164,7 @@ TEST(CovarianceAccumulatorTest, SubtractsSpuriousInformation) {
   EXPECT_TRUE(judged.sum.gradient.isApprox(MotionVector::LinSpaced(1.0, 6.0)));
   EXPECT_EQ(judged.sum.cost, 7.0);
   EXPECT_TRUE(
-      judged.covariance.isApprox(Spread(kBlocks) * left.inverse(), 1e-6));
+      judged.covariance.isApprox(Spread(kBlocks, 6.0) * left.inverse(), 1e-6));
 }
 
 // The information factor scales both terms. A larger scale of the residuals
@@ -204,13 +206,11 @@ TEST(CovarianceAccumulatorTest, InformationThatIsAllSpuriousIsZero) {
   MotionMatrix left = spurious.hessian + right.hessian;
   left.block<2, 2>(1, 1) -= 4.0 * all * all.transpose();  // 4.0 instead of 6.84
   left.block<2, 2>(1, 1) -= 0.36 * little * little.transpose();
-  // Both costs have the same weight and together determine all six parameters:
-  // the trace of their remaining share of the sum is six.
+  // Both costs are of one group and share its six parameters.
   const MotionMatrix inverse = judged.sum.hessian.inverse();
   const double parameters = (inverse * left).trace();
-  const double n = 2.0 * kBlocks;
   EXPECT_TRUE(judged.covariance.isApprox(
-      kSquaredNorm * n / (n - parameters) * left.inverse(), 1e-9));
+      Spread(2.0 * kBlocks, parameters) * left.inverse(), 1e-9));
 }
 
 }  // namespace
