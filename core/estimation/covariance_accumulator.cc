@@ -130,6 +130,23 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
       std::count(estimate->is_inlier.begin(), estimate->is_inlier.end(), true));
 }
 
+double CovarianceAccumulator::FalseAlarmsOf(const RobustProblem& problem) {
+  double scale = 0.0;
+  agreements_.clear();
+  for (const RobustTerm& term : problem.terms()) {
+    if (!term.has_scale()) return 0.0;
+    scale = std::max(scale, term.scale);
+    for (size_t k = 0; k < term.norms.size(); ++k) {
+      if (term.cost->matches()[k] < 0) return 0.0;
+      const int p = term.cost->degrees()[k];
+      const double limit = term.cost->is_whitened() ? ChiSquared99(p)
+                                                    : term.cost->InlierLimit(k);
+      agreements_.push_back({std::sqrt(term.norms[k] / limit), p});
+    }
+  }
+  return FalseAlarms(scale, &agreements_);
+}
+
 NormalEquations CovarianceAccumulator::Linearise(
     const RobustProblem& problem, const MotionDerivatives& motion) {
   NormalEquations sum;

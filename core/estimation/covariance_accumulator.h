@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/estimation/chance_agreement.h"
 #include "core/estimation/motion_cost.h"
 #include "core/estimation/motion_estimate.h"
 #include "core/estimation/robust_problem.h"
@@ -60,6 +61,10 @@ class CovarianceAccumulator {
   // Fills weights, inliers and residual norms, of one entry per match.
   void JudgeMatches(const RobustProblem& problem, MotionEstimate* estimate);
 
+  // FalseAlarms of the matches that agree with the motion. 0 if anything else
+  // than matches, such as pixels or a prior, determines it, too.
+  double FalseAlarmsOf(const RobustProblem& problem);
+
   // RobustProblem::Linearise, minus MotionCost::AddSpuriousInformation.
   NormalEquations Linearise(const RobustProblem& problem,
                             const MotionDerivatives& motion);
@@ -72,6 +77,7 @@ class CovarianceAccumulator {
  private:
   std::vector<CovarianceTerm> shares_;
   std::vector<bool> counted_;  // matches
+  std::vector<MatchAgreement> agreements_;
 };
 
 }  // namespace rgbd_pose

@@ -41,6 +41,7 @@ std::string EstimatorOptions::Check() const {
   if (!(min_inlier_share >= 0.0 && min_inlier_share <= 1.0)) {
     return "min_inlier_share must lie between 0 and 1";
   }
+  if (!(max_false_alarms > 0.0)) return "max_false_alarms must be positive";
   if (!(max_scale > 0.0)) return "max_scale must be positive";
   if (max_scale_rounds < 0) return "max_scale_rounds must not be negative";
   if (threads < 1) return "threads must be at least 1";
@@ -156,6 +157,12 @@ class Estimator::Impl {
       out_->status = EstimateStatus::kInconsistent;
       out_->reason = "only " + std::to_string(out_->num_inliers) + " of " +
                      std::to_string(used) + " matches agree with one motion";
+    } else if (shares_.FalseAlarmsOf(terms_) > options_.max_false_alarms) {
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason = std::to_string(out_->num_inliers) + " of " +
+                     std::to_string(used) +
+                     " matches agree with one motion, as many as wrong ones "
+                     "may by chance";
     } else if (!minimiser_.converged()) {
       out_->status = EstimateStatus::kNotConverged;
       out_->reason =

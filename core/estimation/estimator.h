@@ -48,6 +48,10 @@ struct EstimatorOptions {
   // The estimate is `inconsistent` if the share of inliers is below this.
   double min_inlier_share = 0.2;
 
+  // The estimate is also `inconsistent` if as many matches would agree by
+  // chance more often than this, see FalseAlarms; infinity: allowed.
+  double max_false_alarms = 0.1;
+
   // The estimate is also `inconsistent` if the estimated scale exceeds this.
   double max_scale = 5.0;
 
