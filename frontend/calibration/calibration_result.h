@@ -114,9 +114,10 @@ struct CalibrationResult {
   double depth_after = 0.0;   // with the camera found
   std::vector<HeldOutResidual> residuals;
 
-  // Depth noise with the resulting camera, with the first one and with the one
-  // found; empty if there are too few depths.
-  std::optional<DepthNoiseFit> noise, noise_before, noise_found;
+  // Depth noise with the resulting camera; empty if there are too few depths.
+  std::optional<DepthNoiseFit> noise;
+  std::optional<DepthNoiseFit> noise_before;  // with the first camera
+  std::optional<DepthNoiseFit> noise_found;   // with the camera found
 
   // The parameters that are determined.
   FreeParts Determined() const {

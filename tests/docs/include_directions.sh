@@ -45,7 +45,7 @@ room costs 'core/|costs|robust' 'Eigen/|ceres/'
 room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/frame 'core/|frontend/' "$opencv"
-room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h"
+room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|Imf[A-Za-z]+\.h"
 room frontend/bags 'core/|frontend/' "$opencv|sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|libdeflate\.h"
 room frontend/sources 'core/|frontend/' "$opencv|OpenNI\.h"
 room frontend/features 'core/|frontend/' "$opencv"
@@ -59,7 +59,6 @@ room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
 room apps/shell 'core/|apps/' "$libraries"
-room apps/figures 'core/|apps/' 'none'
 room apps/results "$programs" "$libraries"
 room apps/compare "$programs" "$libraries"
 room apps/batch "$programs" "$libraries"

@@ -122,7 +122,7 @@ TEST_F(BadInputTest, BatchRuns) {
   ASSERT_EQ(call("--merge").exit_code, 0);
   const std::string table = ReadTextFile(folder_ / "out/summary.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
-  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 20);
+  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 21);
 }
 
 // Runs that cannot write their results fail and leave no complete results.

@@ -107,7 +107,7 @@ TEST_F(BadInputTest, Simulate) {
            "the registration error of a"},
           {"a turn that is no number", nullptr, "--registration_turn=nan", 2,
            "the registration error of a"},
-          {"camera", nullptr, "--camera=kinect", 2, "camera 'kinect'"},
+          {"camera", nullptr, "--camera=kinnect", 2, "camera 'kinnect'"},
       });
 }
 
