@@ -32,10 +32,12 @@ function pathTraces(data, axes, type, line) {
   const letters = 'xyz'.split('').slice(0, axes.length);
   const traces = [];
   if (path.true_x) {
-    // A wide pale band, which is seen also where the estimate covers it.
+    // A pale band, which is seen also where the estimate covers it. In 3D, where
+    // the nearer line covers the other, it is hardly wider.
+    const wider = type === 'scatter3d' ? 1.5 : 4;
     const truth = {type, mode: path.x.length === 1 ? 'markers' : 'lines',
                    name: 'ground truth', connectgaps: false,
-                   line: {color: TRUTH_COLOR, width: 4 * line.width},
+                   line: {color: TRUTH_COLOR, width: wider * line.width},
                    marker: {color: COLOR.black, symbol: 'circle-open', size: 9},
                    customdata: data.frames.t,
                    hovertemplate: '%{customdata:.2f} s<extra>ground truth</extra>'};
