@@ -43,6 +43,7 @@ room costs/direct 'core/|costs/' 'Eigen/'
 room costs 'core/|costs|robust' 'Eigen/|ceres/'
 # The type of the cost list is needed here.
 room costs/calibration 'core/|costs' 'Eigen/|ceres/'
+room costs/factors 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/frame 'core/|frontend/' "$opencv"
 room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|Imf[A-Za-z]+\.h"
