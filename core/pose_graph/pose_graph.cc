@@ -21,6 +21,10 @@ namespace {
 constexpr double kNarrowing = 2.0;
 constexpr double kWidest = 1024.0;
 
+// What one edge may cost more by chance: half of the 99.9 % quantile of chi^2
+// with six degrees of freedom.
+constexpr double kLeastGain = 11.23;
+
 // Stages before the last one need not converge.
 constexpr int kGraphIterationsPerEarlyStage = 3;
 constexpr int kGraphIterationsPerRound = 30;
@@ -94,12 +98,16 @@ double Round(double width, int max_iterations, const PoseGraphOptions& options,
   solver.num_threads = options.threads;
   solver.logging_type = ceres::SILENT;
   // Steps of Gauss and Newton, damped only where one does not reduce the cost:
-  // any damping holds the long waves of a long path back.
-  solver.initial_trust_region_radius = 1e16;
-  // Ceres drops the step that makes it stop. Hence a round moves nothing if and
-  // only if its first step is within the tolerance, or changes the cost by no
-  // more than rounding. Ceres compares it with the size of all parameters.
-  solver.parameter_tolerance = options.step_tolerance / problem.norm();
+  // any damping holds the long waves of a long path back. What remains is 1e-12
+  // of the information, also in directions without any: just above rounding.
+  solver.initial_trust_region_radius = solver.max_trust_region_radius = 1e12;
+  solver.min_lm_diagonal = 1.0;
+  // Ceres drops the step that makes it stop; the first one of a round only if
+  // it changes the cost by no more than rounding. So a round that moves poses
+  // by less than the tolerance shows that they have arrived. Ceres compares a
+  // step with the size of all parameters, and a quaternion moves by half the
+  // angle.
+  solver.parameter_tolerance = 0.5 * options.step_tolerance / problem.norm();
   solver.function_tolerance = 1e-14;
   solver.gradient_tolerance = 0.0;
   ceres::Solver::Summary summary;
@@ -125,13 +133,17 @@ double Round(double width, int max_iterations, const PoseGraphOptions& options,
 }
 
 // Solves with losses that are narrowed from a factor of `width` down to 1: from
-// the poses of the graph, or from those of its tree if they agree better.
-Attempt Minimise(const GraphTerms& graph, const std::vector<TreeNode>& tree,
+// the poses of the graph, or from those of a tree of all poses if that costs
+// less. `is_usable`: the edges that the tree may consist of.
+Attempt Minimise(const GraphTerms& graph, const std::vector<bool>& is_usable,
                  double width, const PoseGraphOptions& options) {
   Attempt attempt{graph, {}};
-  attempt.graph.poses = PosesByTree(tree, graph);
-  if (!(CostOf(attempt.graph, width) < CostOf(graph, width))) {
-    attempt.graph.poses = graph.poses;
+  const std::vector<TreeNode> tree = SpanningTree(graph, is_usable);
+  if (FirstOutside(tree, graph) < 0) {
+    attempt.graph.poses = PosesByTree(tree, graph);
+    if (!(CostOf(attempt.graph, width) < CostOf(graph, width))) {
+      attempt.graph.poses = graph.poses;
+    }
   }
   for (; width > 1.0 && attempt.solution.ok(); width /= kNarrowing) {
     Round(width, kGraphIterationsPerEarlyStage, options, &attempt);
@@ -142,12 +154,26 @@ Attempt Minimise(const GraphTerms& graph, const std::vector<TreeNode>& tree,
        ++round) {
     moved = Round(1.0, kGraphIterationsPerRound, options, &attempt);
   }
-  if (attempt.solution.ok() && moved > options.step_tolerance) {
+  if (!attempt.solution.ok()) return attempt;
+  if (moved > options.step_tolerance) {
     attempt.solution.status = GraphStatus::kNotConverged;
     attempt.solution.reason = "poses still moved by " + Format("%.2g", moved) +
                               " (rad or m) in round " +
                               std::to_string(options.max_rounds) +
                               ", the last one";
+    return attempt;
+  }
+  const int pose =
+      GraphProblem(attempt.graph, 1.0)
+          .FindUndetermined(attempt.graph, options.max_standard_deviation);
+  if (pose >= 0) {
+    attempt.solution.status = GraphStatus::kSingular;
+    attempt.solution.reason =
+        NameOf(pose) +
+        " is not determined: no path of motions with standard deviations of at "
+        "most " +
+        ShortNumber(options.max_standard_deviation) +
+        " (rad, m) leads to a fixed pose";
   }
   return attempt;
 }
@@ -177,42 +203,32 @@ GraphSolution PoseGraph::Solve() {
     return true;
   };
   if (is_refused(FindBadInput(graph_), GraphStatus::kBadInput)) return solution;
-  const std::vector<TreeNode> tree =
-      SpanningTree(graph_, std::vector<bool>(graph_.edges.size(), true));
-  const int outside = FirstOutside(tree, graph_);
+  const std::vector<bool> all(graph_.edges.size(), true);
+  const int outside = FirstOutside(SpanningTree(graph_, all), graph_);
   if (is_refused(outside < 0
                      ? ""
                      : NameOf(outside) + " is not connected to any fixed pose",
                  GraphStatus::kNotAnchored)) {
     return solution;
   }
-  Attempt best = Minimise(graph_, tree, 1.0, options_);
+  // An edge with a loss may be wrong, and then all poses behind it.
+  std::vector<bool> is_right;
+  for (const auto& edge : graph_.edges)
+    is_right.push_back(edge.loss == nullptr);
+  Attempt best = Minimise(graph_, is_right, 1.0, options_);
   const double width = FirstWidth(graph_);
   if (options_.graduated && width > 1.0) {
-    Attempt other = Minimise(graph_, tree, width, options_);
+    Attempt other = Minimise(graph_, is_right, width, options_);
     const int iterations = best.solution.iterations + other.solution.iterations;
     if (!best.solution.ok() ||
         (other.solution.ok() &&
-         other.solution.final_cost < best.solution.final_cost)) {
+         other.solution.final_cost + kLeastGain < best.solution.final_cost)) {
       best = std::move(other);
     }
     best.solution.iterations = iterations;
   }
   solution = best.solution;
   solution.initial_cost = CostOf(graph_, 1.0);
-  if (solution.ok()) {
-    const int pose =
-        GraphProblem(best.graph, 1.0)
-            .FindUndetermined(best.graph, options_.max_standard_deviation);
-    is_refused(pose < 0
-                   ? ""
-                   : NameOf(pose) +
-                         " is not determined: no path of motions with standard "
-                         "deviations of at most " +
-                         ShortNumber(options_.max_standard_deviation) +
-                         " (rad, m) leads to a fixed pose",
-               GraphStatus::kSingular);
-  }
   if (solution.ok()) {
     graph_.poses = std::move(best.graph.poses);
   } else {

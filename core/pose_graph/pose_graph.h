@@ -34,15 +34,18 @@ struct GraphTerms {
 // How a graph is solved.
 struct PoseGraphOptions {
   // Solves a second time, with losses so wide at first that all edges count and
-  // narrowed step by step, and keeps what has the lower final cost: for poses
-  // that may be far off. False: final widths at once.
+  // narrowed step by step: for poses that may be far off. This result is kept
+  // if its final cost is lower by more than one edge may differ by chance;
+  // without that, or without a solution, that of the final widths at once.
+  // Where wrong edges agree with each other as well as the right ones, neither
+  // can tell.
   bool graduated = false;
 
-  // Maximum number of solves, each from the poses of the last one.
-  // The last one needed moves nothing: that is how it is known to be the last.
+  // Maximum number of solves, each from the poses of the last one. One more
+  // than the poses need to arrive, which shows that they have.
   int max_rounds = 10;
 
-  // Stops when a step of all poses together is shorter than this (rad and m).
+  // Poses have arrived if a solve moves none by more than this (rad and m).
   double step_tolerance = 1e-6;
 
   // A motion between two poses is determined if no direction of it has a larger
@@ -106,9 +109,9 @@ class PoseGraph {
   void AddEdge(const RelativePose& edge,
                const ceres::LossFunction* loss = nullptr);
 
-  // Optimises the poses that are not fixed, from where they are or, if this
-  // costs less, from where the shortest paths of edges put them. Ignores edges
-  // between fixed poses.
+  // Optimises the poses that are not fixed. Starts where they are or, if that
+  // costs less, where the shortest paths of edges without a loss put them.
+  // Ignores edges between fixed poses.
   GraphSolution Solve();
 
   // The number of poses, fixed ones included.
