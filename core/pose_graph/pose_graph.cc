@@ -54,12 +54,22 @@ double CostOf(const GraphTerms& graph, double width) {
 
 std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
+// What is wrong with a motion, or an empty text. A user may have set its
+// members by hand.
+std::string FaultOf(const Rigid3d& motion) {
+  if (!motion.IsFinite()) return "is not finite";
+  constexpr double kRounding = 1e-6;  // of quaternions in single precision
+  const double norm = motion.rotation.norm();
+  if (std::abs(norm - 1.0) <= kRounding) return "";
+  return "has a quaternion of length " + Format("%.7g", norm) + " instead of 1";
+}
+
 // One line on invalid values, or an edge that does not connect two poses; empty
 // if there is nothing wrong.
 std::string FindBadInput(const GraphTerms& graph) {
   for (size_t i = 0; i < graph.poses.size(); ++i) {
-    if (graph.poses[i].world_from_cam.IsFinite()) continue;
-    return NameOf(static_cast<int>(i)) + " is not finite";
+    const std::string fault = FaultOf(graph.poses[i].world_from_cam);
+    if (!fault.empty()) return NameOf(static_cast<int>(i)) + " " + fault;
   }
   const auto has = [&graph](int pose) {
     return pose >= 0 && pose < static_cast<int>(graph.poses.size());
@@ -70,9 +80,8 @@ std::string FindBadInput(const GraphTerms& graph) {
     if (!has(edge.ref) || !has(edge.cur) || edge.ref == edge.cur) {
       return name + " does not connect two poses of the graph";
     }
-    if (!edge.cur_from_ref.IsFinite()) {
-      return name + " has a motion that is not finite";
-    }
+    const std::string fault = FaultOf(edge.cur_from_ref);
+    if (!fault.empty()) return name + " has a motion that " + fault;
     if (!edge.root.allFinite()) {
       return name + " has a covariance that is not positive definite";
     }

@@ -211,6 +211,23 @@ INSTANTIATE_TEST_SUITE_P(
                   g->AddPose(pose);
                 },
                 GraphStatus::kBadInput, "pose 5 is not finite"},
+        BadCase{"no_rotation",
+                [](PoseGraph* g) {
+                  Rigid3d pose;
+                  pose.rotation.coeffs().setZero();
+                  g->AddPose(pose);
+                },
+                GraphStatus::kBadInput,
+                "pose 5 has a quaternion of length 0 instead of 1"},
+        BadCase{"long_quaternion",
+                [](PoseGraph* g) {
+                  RelativePose edge = AnyEdge(0, 2);
+                  edge.cur_from_ref.rotation.coeffs() *= 3.0;
+                  g->AddEdge(edge);
+                },
+                GraphStatus::kBadInput,
+                "the edge from pose 0 to pose 2 has a motion that has a "
+                "quaternion of length 3 instead of 1"},
         BadCase{"nan_edge",
                 [](PoseGraph* g) {
                   RelativePose edge = AnyEdge(0, 2);
