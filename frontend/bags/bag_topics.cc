@@ -47,6 +47,19 @@ struct Fitness {
   std::string encoding = {};  // of its images
 };
 
+// Whether the name of a topic says that its 16-bit or floating-point images are
+// not depth. Depth that is aligned to an infrared camera is called depth, too.
+bool IsCalledOtherThanDepth(const std::string& name) {
+  for (const char* word : {"disparity", "confidence"}) {
+    if (Contains(name, word)) return true;
+  }
+  if (Contains(name, "depth")) return false;
+  for (const char* word : {"infra", "/ir", "thermal", "lwir"}) {
+    if (Contains(name, word)) return true;
+  }
+  return false;
+}
+
 Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   Fitness fitness{topic.name};
   const std::vector<BagMessage> first = bag->First(topic.name, 1);
@@ -65,17 +78,48 @@ Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   } else if (use == RosImageUse::kGray) {
     const bool is_infrared = Contains(name, "infra") || Contains(name, "/ir");
     fitness.color = (is_infrared ? 10 : 20) + if_raw;
-  } else if (use == RosImageUse::kGrayOrDepth) {
-    fitness.depth = 5 + if_raw;
-  } else if (use != RosImageUse::kOther) {
-    fitness.depth = (IsCalledRegistered(name) ? 40 : 20) + if_raw;
+  } else if (use != RosImageUse::kOther && !IsCalledOtherThanDepth(name)) {
+    const bool is_named = Contains(name, "depth");
+    fitness.depth = (IsCalledRegistered(name) ? 40
+                     : is_named               ? 20
+                                              : 5) +
+                    if_raw;
   }
   return fitness;
 }
 
+// Whether two topics show the same image, at the first stamp that both have:
+// drivers publish one image under several names, or depth in mm and in metres.
+bool AreSame(BagReader* bag, const std::string& a, const std::string& b,
+             bool is_depth) {
+  constexpr int kImages = 8;
+  constexpr double kMaxShare = 0.02;  // of pixels that differ
+  const auto decode = [&](const BagMessage& message) {
+    const RosImage image = ReadImageOf(*bag, message);
+    return is_depth ? DecodeRosDepth(image, message.topic, 1000.0)
+                    : DecodeRosGray(image, message.topic, nullptr);
+  };
+  const std::vector<BagMessage> others = bag->First(b, kImages);
+  for (const BagMessage& first : bag->First(a, kImages)) {
+    const double stamp = ReadImageOf(*bag, first).header.stamp;
+    for (const BagMessage& other : others) {
+      if (ReadImageOf(*bag, other).header.stamp != stamp) continue;
+      const cv::Mat image = decode(first), same = decode(other);
+      if (image.size() != same.size()) return false;
+      // Metres are rounded to mm, and missing depth is 0, 65535 or NaN.
+      cv::Mat difference;
+      cv::absdiff(image, same, difference);
+      const int differ = cv::countNonZero(difference > (is_depth ? 1 : 0));
+      return differ <= kMaxShare * static_cast<double>(image.total());
+    }
+  }
+  return false;
+}
+
 // The topic most suitable as `what`. Sets `had_choice` if others are suitable.
-std::string Best(const BagReader& bag, const std::vector<Fitness>& fitness,
+std::string Best(BagReader* reader, const std::vector<Fitness>& fitness,
                  int Fitness::*what, const char* name, bool* had_choice) {
+  const BagReader& bag = *reader;
   int most = 1;
   for (const Fitness& f : fitness) most = std::max(most, f.*what);
   std::vector<std::string> best;  // all that are equally suitable
@@ -91,9 +135,11 @@ std::string Best(const BagReader& bag, const std::vector<Fitness>& fitness,
         " images; topics: " + ListOf(bag.topics()) +
         (encodings.empty() ? "" : " (encodings: " + Join(encodings) + ")"));
   }
-  if (best.size() > 1) {
-    throw InputError(bag.path() + ": both " + best.front() + " and " +
-                     best.back() + " may be the " + name +
+  for (size_t i = 1; i < best.size(); ++i) {
+    *had_choice = true;
+    if (AreSame(reader, best[0], best[i], what == &Fitness::depth)) continue;
+    throw InputError(bag.path() + ": both " + best.front() + " and " + best[i] +
+                     " may be the " + name +
                      " images; choose with topics=COLOUR,DEPTH from " +
                      ListOf(bag.topics()));
   }
@@ -156,9 +202,13 @@ BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
       if (IsImage(topic)) fitness.push_back(FitnessOf(bag, topic));
     }
     chosen.color =
-        Best(*bag, fitness, &Fitness::color, "colour", &chosen.had_choice);
+        Best(bag, fitness, &Fitness::color, "colour", &chosen.had_choice);
     chosen.depth =
-        Best(*bag, fitness, &Fitness::depth, "depth", &chosen.had_choice);
+        Best(bag, fitness, &Fitness::depth, "depth", &chosen.had_choice);
+    // Some drivers call depth otherwise: users are told what was taken for it.
+    if (!Contains(cv::toLowerCase(chosen.depth), "depth")) {
+      chosen.had_choice = true;
+    }
   } else {
     if (names.size() < 2 || names.size() > 3) {
       throw InputError(

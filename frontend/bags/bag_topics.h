@@ -17,7 +17,9 @@ struct BagTopics {
   std::string color_info;  // CameraInfo; empty: none
   std::string depth_info;
   std::vector<std::string> transforms;  // /tf and /tf_static
-  bool had_choice = false;  // whether other topics were suitable as well
+  // Whether other topics were suitable as well, or the name of that of depth
+  // does not say so.
+  bool had_choice = false;
 };
 
 // Chooses the topics given by `names` (colour, depth and, unless it is next to

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "frontend/files/image_file.h"
@@ -110,6 +111,24 @@ uint16_t RawDepth(double metres, double depth_scale) {
   return raw > 0.0 && raw < Frame::kNoDepth ? static_cast<uint16_t>(raw) : 0;
 }
 
+// Floating-point depth is in metres (REP 118). Some drivers write millimetres,
+// which would all be too far.
+void CheckIsInMetres(const cv::Mat& depth, const std::string& name) {
+  constexpr float kTooFar = 100.0F;  // for any camera, m
+  int measured = 0, too_far = 0;
+  for (const float metres : cv::Mat_<float>(depth)) {
+    if (!(metres > 0.0F) || std::isinf(metres)) continue;
+    ++measured;
+    too_far += metres > kTooFar ? 1 : 0;
+  }
+  if (2 * too_far <= measured) return;
+  throw InputError(name + Format(": more than half of the depths are beyond %g "
+                                 "m; floating-point depth must be in metres "
+                                 "(REP 118): if these are millimetres, write "
+                                 "them as 16UC1",
+                                 kTooFar));
+}
+
 // A PNG file after 12 bytes: 4 unused bytes and two floats, A and B. Depth in
 // metres is stored as A / depth + B.
 cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
@@ -179,6 +198,7 @@ cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
   }
   cv::Mat rows = PixelRows(image, *encoding, name);
   if (encoding->type == CV_16UC1) return rows;
+  CheckIsInMetres(rows, name);
   cv::Mat depth(rows.size(), CV_16UC1);
   std::transform(rows.begin<float>(), rows.end<float>(),
                  depth.begin<uint16_t>(),

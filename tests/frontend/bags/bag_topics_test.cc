@@ -1,5 +1,8 @@
 #include "frontend/bags/bag_topics.h"
 
+#include <string>
+#include <utility>
+
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
 namespace rgbd_pose {
@@ -38,6 +41,75 @@ TEST_F(Ros1BagTest, AsksWhichTopicsWhereSeveralWillDo) {
                    {"of the unsuitable type sensor_msgs/CameraInfo"});
   options.topics = {kColor};
   ExpectInputError([&] { OpenSource("auto", options); }, {"COLOUR,DEPTH"});
+}
+
+// Infrared, thermal, disparity and confidence have the encodings of depth.
+TEST_F(Ros1BagTest, TakesNoOtherImagesForDepth) {
+  const cv::Mat metres(kHeight, kWidth, CV_32FC1, cv::Scalar(1.0));
+  const std::pair<const char*, const char*> others[] = {
+      {"/ir/image_raw", "mono16"},
+      {"/thermal/image_raw", "16UC1"},
+      {"/stereo/disparity_image", "32FC1"},
+      {"/zed/confidence/confidence_map", "32FC1"}};
+  for (const auto& [topic, encoding] : others) {
+    for (const bool has_depth : {false, true}) {
+      Open();
+      WriteInfo();
+      for (int k = 0; k < 3; ++k) {
+        WriteColor(k);
+        const std::string text = encoding;
+        Write(topic, StampOf(k) + 0.011,
+              MakeImage(text == "32FC1" ? metres : DepthImage(k), text,
+                        StampOf(k) + 0.004));
+        if (has_depth) WriteDepth(k);
+      }
+      if (has_depth) {
+        ExpectFrames(Source().get(), 3);
+      } else {
+        ExpectRefused({"has no readable depth images", topic});
+      }
+    }
+  }
+}
+
+TEST_F(Ros1BagTest, SaysWhatIsTakenForDepthIfItsNameDoesNot) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < 3; ++k) {
+    WriteColor(k);
+    Write("/oak/stereo/image_raw", StampOf(k) + 0.011,
+          MakeImage(DepthImage(k), "16UC1", StampOf(k) + 0.004));
+  }
+  const auto source = Source();
+  ExpectFrames(source.get(), 3);
+  ASSERT_EQ(source->remarks().size(), 1U);
+  EXPECT_NE(source->remarks()[0].find("depth /oak/stereo/image_raw"),
+            std::string::npos);
+}
+
+// As openni2 does with depth and the ZED with colour.
+TEST_F(Ros1BagTest, TakesOneOfTopicsThatShowTheSame) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < 3; ++k) {
+    WriteColor(k);
+    WriteDepth(k);
+    Write("/camera/left/image_color", StampOf(k) + 0.01,
+          MakeImage(ColorImage(k), "bgr8", StampOf(k)));
+    cv::Mat metres;
+    DepthImage(k).convertTo(metres, CV_32FC1, 0.001);
+    Write("/camera/depth_registered/image", StampOf(k) + 0.011,
+          MakeImage(metres, "32FC1", StampOf(k) + 0.004));
+  }
+  SourceOptions options = Options();
+  options.topics = {kColor, kDepth};
+  ExpectFrames(OpenSource("auto", options).get(), 3);
+  const auto source = Source();
+  int frames = 0;
+  while (source->Next()) ++frames;
+  EXPECT_EQ(frames, 3);
+  ASSERT_EQ(source->remarks().size(), 1U);
+  EXPECT_NE(source->remarks()[0].find("choose others"), std::string::npos);
 }
 
 TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {

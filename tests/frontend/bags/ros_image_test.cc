@@ -68,6 +68,25 @@ TEST_F(Ros1BagTest, ReadsMetres) {
   ExpectFrames(OpenSource("auto", options).get(), kFrames, 2000.0);
 }
 
+TEST_F(Ros1BagTest, RefusesMillimetresThatAreCalledMetres) {
+  for (const bool is_far : {false, true}) {  // infinite: farther than measured
+    Open();
+    WriteInfo();
+    WriteColor(0);
+    cv::Mat depth;
+    DepthImage(0).convertTo(depth, CV_32F, is_far ? 0.001 : 1.0);
+    if (is_far) depth.rowRange(0, kHeight - 4).setTo(INFINITY);
+    Write("/camera/depth/image", kStart,
+          MakeImage(depth, "32FC1", kStart + 0.004));
+    if (is_far) {
+      EXPECT_GT(Source()->Next()->read().DepthAt(5, kHeight - 2), 0.0);
+    } else {
+      ExpectRefused({"/camera/depth/image at 1000.004", "beyond 100 m",
+                     "(REP 118)", "16UC1"});
+    }
+  }
+}
+
 TEST_F(Ros1BagTest, ReadsCompressedImages) {
   for (const bool is_metric : {false, true}) {
     Open();
