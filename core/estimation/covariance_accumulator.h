@@ -18,12 +18,14 @@ struct LossSums {
   double weight_p = 0.0;  // rho' p
   double slope_p = 0.0;   // rho' p + 2 s rho''
   int blocks = 0;
+  double model_psi2 = 0.0;  // psi2 of residuals of the noise model's size
 
   LossSums& operator+=(const LossSums& other) {
     psi2 += other.psi2;
     weight_p += other.weight_p;
     slope_p += other.slope_p;
     blocks += other.blocks;
+    model_psi2 += other.model_psi2;
     return *this;
   }
 };
@@ -42,15 +44,17 @@ struct CovarianceTerm {
 // psi to the mean weight. B is the sum of the same Hessians, each times the
 // variance of its rows in units of the noise model,
 //
-//   (sum of psi^2 + d0) / (sum of weights - fitted + d0),
+//   (sum of psi^2 + d0 v) / (sum of weights - fitted + d0),
 //
 // or, for costs that do not whiten fully, of the scatter of their blocks in
 // place of psi^2. Sums are over a scale group; `fitted` is its share of the six
-// parameters. The noise model counts as d0 = 6 rows (the moderated variance of
-// Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004): the residuals of few matches
-// are small because the motion is fitted to them, and those of a frame against
-// itself are zero. The Hessian of exact sigmas (a prior) is added to A and B
-// unchanged. `inverse` is the inverse of the sum of all Hessians.
+// parameters. The noise model, whose rows have the variance v (1 unless a scale
+// is estimated), counts as d0 = 6 rows (the moderated variance of Smyth, Stat.
+// Appl. Genet. Mol. Biol. 3, 2004): the residuals of few matches are small
+// because the motion is fitted to them. Residuals that are almost zero (a frame
+// against itself) do not prove a measurement to be better than its rounding.
+// The Hessian of exact sigmas (a prior) is added to A and B unchanged.
+// `inverse` is the inverse of the sum of all Hessians.
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);
 

@@ -41,10 +41,11 @@ struct PoseOf {
 // A pose, world_from_body, as [qx qy qz qw x y z]. A quaternion of any length
 // stands for the rotation of the unit quaternion along it.
 struct PoseBlock {
-  static constexpr char kName[] = "pose";
-  static constexpr int kSize = 7;
-  static constexpr int kTangent = 6;
+  static constexpr char kName[] = "pose";  // for messages
+  static constexpr int kSize = 7;          // numbers in the block
+  static constexpr int kTangent = 6;       // dimensions of the tangent
 
+  // The pose of the block.
   template <typename T>
   static PoseOf<T> Read(const T* x) {
     return {Eigen::Quaternion<T>(x[3], x[0], x[1], x[2]).normalized(),
@@ -95,6 +96,7 @@ struct PoseBlock {
            std::string(1, "xyz"[tangent % 3]);
   }
 
+  // A pose of the size of a scene, for checks.
   static PoseVector Random(FactorSampler* random) {
     const Rigid3d pose = random->Motion();
     PoseVector x;
@@ -114,15 +116,17 @@ struct PoseBlock {
   }
 };
 
-// A rigid motion as the numbers of its block, as what factors read, and back.
+// A rigid motion as the numbers of its block.
 inline PoseVector PoseVectorOf(const Rigid3d& world_from_body) {
   PoseVector x;
   x << world_from_body.rotation.coeffs(), world_from_body.translation;
   return x;
 }
+// The same motion, as factors read it.
 inline PoseOf<double> PoseFrom(const Rigid3d& world_from_body) {
   return {world_from_body.rotation, world_from_body.translation};
 }
+// The motion of a block.
 inline Rigid3d RigidOf(const PoseVector& pose) {
   return Rigid3d(Eigen::Quaterniond(pose[3], pose[0], pose[1], pose[2]),
                  pose.tail<3>());
@@ -131,19 +135,22 @@ inline Rigid3d RigidOf(const PoseVector& pose) {
 // N numbers without constraints; they are their own tangent.
 template <int N>
 struct VectorBlock {
-  static constexpr char kName[] = "vector";
-  static constexpr int kSize = N;
-  static constexpr int kTangent = N;
+  static constexpr char kName[] = "vector";  // for messages
+  static constexpr int kSize = N;            // numbers in the block
+  static constexpr int kTangent = N;         // dimensions of the tangent
 
+  // The numbers of the block.
   template <typename T>
   static Eigen::Matrix<T, N, 1> Read(const T* x) {
     return Eigen::Map<const Eigen::Matrix<T, N, 1>>(x);
   }
 
+  // d x / d tangent: the identity.
   static Eigen::Matrix<double, N, N> PlusJacobian(const double* /*x*/) {
     return Eigen::Matrix<double, N, N>::Identity();
   }
 
+  // Writes kRows x N numbers, row by row.
   template <int kRows>
   static void Lift(const Eigen::Matrix<double, kRows, N>& by,
                    const double* /*x*/, double* jacobian) {
@@ -152,12 +159,15 @@ struct VectorBlock {
     }
   }
 
+  // x moved by d.
   static void Plus(const double* x, const double* d, double* moved) {
     for (int k = 0; k < N; ++k) moved[k] = x[k] + d[k];
   }
 
+  // A direction of the tangent in words.
   static std::string NameOf(int k) { return "number " + std::to_string(k); }
 
+  // A value of the size of a scene, for checks.
   static Eigen::Matrix<double, N, 1> Random(FactorSampler* random) {
     return random->Vector<N>(1.0);
   }

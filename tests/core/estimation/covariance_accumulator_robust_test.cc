@@ -25,7 +25,7 @@ CovarianceTerm Whitened(double seed) {
   term.scatter.setConstant(1e9);  // not used
   term.is_whitened = true;
   term.scale_group = kGroup;
-  term.sums = {270.0, 240.0, 180.0, 100};
+  term.sums = {270.0, 240.0, 180.0, 100, 240.0};
   return term;
 }
 
@@ -63,12 +63,31 @@ TEST(RobustCovarianceTest, TheSlopeIsAFifthOfTheWeightAtLeast) {
 TEST(RobustCovarianceTest, FewRowsHaveTheVarianceOfTheNoiseModel) {
   CovarianceTerm term = Whitened(1.0);
   for (const double rows : {3.0, 6.0}) {
-    term.sums = {0.0, rows, rows, 3};
+    term.sums = {0.0, rows, rows, 3, rows};
     ExpectNear(Covariance({term}), term.hessian.inverse());
   }
-  term.sums = {20.0, 8.0, 8.0, 3};
+  term.sums = {20.0, 8.0, 8.0, 3, 8.0};
   ExpectNear(Covariance({term}),
              (20.0 + 6.0) / (2.0 + 6.0) * term.hessian.inverse());
+}
+
+// The noise model is that of residuals before they are scaled.
+TEST(RobustCovarianceTest, TheNoiseModelIsNotScaled) {
+  CovarianceTerm term = Whitened(1.0);
+  term.sums = {240.0, 240.0, 240.0, 100, 4.0 * 240.0};  // a scale of 0.5
+  ExpectNear(Covariance({term}), (240.0 + 6.0 * 4.0) / (240.0 - 6.0 + 6.0) *
+                                     term.hessian.inverse());
+}
+
+// A frame against itself is not known better than depths are rounded.
+TEST(RobustCovarianceTest, ResidualsThatAreZeroAreRounded) {
+  CovarianceTerm term = Whitened(1.0);
+  term.sums = {0.0, 240.0, 240.0, 100, 240.0};
+  const MotionMatrix rounded = Covariance({term});
+  ExpectNear(rounded,
+             Spread(0.05 * 0.05 * 240.0, 240.0) * term.hessian.inverse());
+  term.is_whitened = false;
+  ExpectNear(Covariance({term}), rounded);
 }
 
 TEST(RobustCovarianceTest, OfACostThatIsNotWhitenedByItsScatter) {
@@ -111,8 +130,8 @@ TEST(RobustCovarianceTest, APriorCountsAsItIs) {
 TEST(RobustCovarianceTest, GroupsAreJudgedApart) {
   CovarianceTerm first = Whitened(1.0), second = Whitened(2.0);
   CovarianceTerm other = Whitened(3.0);
-  second.sums = {30.0, 60.0, 45.0, 20};
-  other.sums = {50.0, 100.0, 90.0, 40};
+  second.sums = {30.0, 60.0, 45.0, 20, 60.0};
+  other.sums = {50.0, 100.0, 90.0, 40, 100.0};
   other.scale_group = kGroup + 1;
   const MotionMatrix both = first.hessian + second.hessian;
   const MotionMatrix inverse = (both + other.hessian).inverse();
