@@ -180,7 +180,9 @@ TEST(EstimatorTest, FiniteNumbersThatNoCameraMeasuresAreRejected) {
   }
 }
 
-// A frame against itself: the measurements are still rounded.
+// A frame against itself: the measurements are still rounded, and the noise
+// model counts as six of their rows, so as 3 % of 200 matches and more where
+// rows weigh unequally.
 TEST(EstimatorTest, EqualFramesAreNotCertain) {
   RandomWorld world(16);
   const Correspondences noisy = world.Matches(200, 0.0, Rigid3d());
@@ -197,7 +199,7 @@ TEST(EstimatorTest, EqualFramesAreNotCertain) {
       for (int i = 0; i < 6; ++i) {
         const double share = estimate.covariance(i, i) / usual(i, i);
         EXPECT_GT(share, std::pow(0.03, 2)) << cost << " " << scale;
-        EXPECT_LT(share, std::pow(0.2, 2)) << cost << " " << scale;
+        EXPECT_LT(share, std::pow(0.3, 2)) << cost << " " << scale;
       }
     }
   }

@@ -330,11 +330,11 @@ TEST(CameraKeysTest, OfOthersAreNamedUnlessProgramsOfTheLayoutHaveThem) {
       "ORBextractor.nFeatures: 1000\nViewer.KeyFrameSize: 0.05\n"
       "Camera.newWidth: 600\nCamera.newHeight: 350\nStereo.b: 0.07\n";
   EXPECT_EQ(ReadCameraText(kOrbSlam2 + of_orb_slam, "a.yaml").remark, "");
-  EXPECT_EQ(ReadCameraText(
-                std::string(kOrbSlam2) + "Camera.id: 3\ndepth_unit: 1000\n",
-                "a.yaml")
-                .remark,
-            "a.yaml: unknown keys, which are not read: Camera.id, depth_unit");
+  EXPECT_EQ(
+      ReadCameraText(
+          std::string(kOrbSlam2) + "Camera.id: 3\ndepth_unit: 1000\n", "a.yaml")
+          .remark,
+      "a.yaml: unknown keys, which are not read: Camera.id, depth_unit");
   // A key at the wrong place.
   EXPECT_EQ(ReadCameraText(Replace(kKalibr, "  rostopic",
                                    "  color_readout: 0.02\n  rostopic"),
