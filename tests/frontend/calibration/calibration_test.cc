@@ -232,7 +232,8 @@ TEST(CalibrationTest, FindsShuttersAndClocks) {
   EXPECT_NEAR(result.camera.depth_shutter.offset, -0.015, 1e-3);
   // Poses compensate most of it in the first camera.
   EXPECT_GT(ReadoutLeft(result, &HeldOutResidual::before), 1e-3);
-  EXPECT_NEAR(ReadoutLeft(result, &HeldOutResidual::after), 0.0, 3e-4);
+  // A pair of keyframes more or less moves it by 0.2 ms.
+  EXPECT_NEAR(ReadoutLeft(result, &HeldOutResidual::after), 0.0, 5e-4);
 }
 
 TEST(CalibrationTest, ACameraAtRestDoesNotTellItsShutters) {
