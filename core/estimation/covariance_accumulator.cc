@@ -83,8 +83,7 @@ MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
     const MotionMatrix one_row = 1.0 / sums.weight_p * term.hessian;
     const MotionMatrix scatter =
         by_hessian ? MotionMatrix(psi2 * one_row) : term.scatter;
-    const double model_rows = kModelRows * sums.model_psi2 / sums.weight_p;
-    B += sums.weight_p / left * (scatter + model_rows * one_row);
+    B += sums.weight_p / left * (scatter + kModelRows * one_row);
     A += std::max(sums.slope_p / sums.weight_p, kMinSlope) * term.hessian;
   }
   const MotionMatrix A_inverse =

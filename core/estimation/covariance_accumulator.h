@@ -44,17 +44,17 @@ struct CovarianceTerm {
 // psi to the mean weight. B is the sum of the same Hessians, each times the
 // variance of its rows in units of the noise model,
 //
-//   (sum of psi^2 + d0 v) / (sum of weights - fitted + d0),
+//   (sum of psi^2 + d0) / (sum of weights - fitted + d0),
 //
 // or, for costs that do not whiten fully, of the scatter of their blocks in
 // place of psi^2. Sums are over a scale group; `fitted` is its share of the six
-// parameters. The noise model, whose rows have the variance v (1 unless a scale
-// is estimated), counts as d0 = 6 rows (the moderated variance of Smyth, Stat.
-// Appl. Genet. Mol. Biol. 3, 2004): the residuals of few matches are small
-// because the motion is fitted to them. Residuals that are almost zero (a frame
-// against itself) do not prove a measurement to be better than its rounding.
-// The Hessian of exact sigmas (a prior) is added to A and B unchanged.
-// `inverse` is the inverse of the sum of all Hessians.
+// parameters. The noise model, at its estimated scale, counts as d0 = 6 rows
+// (the moderated variance of Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004): the
+// residuals of few matches are small because the motion is fitted to them.
+// Residuals that are almost zero (a frame against itself) do not prove a
+// measurement to be better than its rounding. The Hessian of exact sigmas (a
+// prior) is added to A and B unchanged. `inverse` is the inverse of the sum of
+// all Hessians.
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);
 
