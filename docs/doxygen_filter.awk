@@ -4,6 +4,8 @@
 # Members that explain themselves need none: destructors, constructors and
 # operators that are defaulted, deleted, move or convert in one line, accessors
 # `x() { return x_; }`, and fields whose names say all.
+# What every factor defines is described once, in core/factors/factor.h, and what
+# overrides a function of Ceres in Ceres.
 function is_trivial(line) {
   return line ~ /^ *explicit [A-Z][A-Za-z0-9]*\(const [A-Z][A-Za-z0-9]*& [a-z]+\) : .*\{\}$/ ||
          line ~ /^ *(virtual )?~?[A-Z][A-Za-z0-9]*\([A-Za-z0-9&, ]*\) *(= (default|delete)|noexcept)?;$/ ||
@@ -11,6 +13,12 @@ function is_trivial(line) {
          line ~ /^ *[a-zA-Z:<>_&* ]+ ([a-z_]+)\(\) const \{ return [a-z_]+_(\.size\(\))?; \}$/ ||
          line ~ /^ *(int|double|size_t) (count|rmse|mean|max|min|size|width|height)( = 0(\.0)?)?;$/ ||
          line ~ /^ *[A-Za-z:<>_ ]+ (frame|camera|prev|cur);$/
+}
+function is_described_elsewhere(line) {
+  return line ~ /^ *static constexpr (char|const char\*|int) (kName|kRows)/ ||
+         line ~ /^ *using (Blocks|ByPose) =/ ||
+         line ~ / override( \{.*|;)$/ ||
+         line ~ /^ *(bool (Residual|Jacobian)|static [A-Za-z]+Factor Sample)\(/
 }
 {
   place = index($0, "//")
@@ -58,6 +66,9 @@ place && before ~ /^ *$/ {
   ended = before ~ /[;}] *$/
   if (!own && is_bare && is_trivial($0)) {
     print $0 " ///< &nbsp;"
+  } else if (!own && is_bare && FILENAME ~ /factors\// && is_described_elsewhere($0)) {
+    print "/// As every factor (core/factors/factor.h), or as Ceres has it."
+    print
   } else if (own) {
     beside = place
     print before "///<" substr($0, place + 2)

@@ -176,7 +176,7 @@ struct VectorBlock {
 // The blocks of a factor, in their order.
 template <typename... Blocks>
 struct BlockList {
-  static constexpr int kCount = sizeof...(Blocks);
+  static constexpr int kCount = sizeof...(Blocks);  // how many
 };
 
 }  // namespace rgbd_pose

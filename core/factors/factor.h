@@ -13,14 +13,14 @@
 // A factor is a residual over the parameter blocks of any ceres::Problem. It is
 // a type that defines (example: core/factors/relative_pose.h)
 //
-//   static constexpr char kName[];
-//   using Blocks = BlockList<PoseBlock, PoseBlock>;   its blocks, in order
-//   static constexpr int kRows;                       of the residual
-//   template <typename T>
-//   bool Residual(const PoseOf<T>& a, const PoseOf<T>& b, T* r) const;
-//   bool Jacobian(const PoseOf<double>& a, const PoseOf<double>& b, double* r,
-//                 TangentJacobian<kRows, PoseBlock>* by_a,
-//                 TangentJacobian<kRows, PoseBlock>* by_b) const;
+//     static constexpr char kName[];
+//     using Blocks = BlockList<PoseBlock, PoseBlock>;   its blocks, in order
+//     static constexpr int kRows;                       of the residual
+//     template <typename T>
+//     bool Residual(const PoseOf<T>& a, const PoseOf<T>& b, T* r) const;
+//     bool Jacobian(const PoseOf<double>& a, const PoseOf<double>& b,
+//                   double* r, TangentJacobian<kRows, PoseBlock>* by_a,
+//                   TangentJacobian<kRows, PoseBlock>* by_b) const;
 //
 // Residuals are whitened: one sigma is 1. Jacobian fills in r, too, and is by
 // hand, in the tangent (core/factors/blocks.h); a factor without it is

@@ -21,6 +21,7 @@
 
 namespace rgbd_pose {
 
+// What Ceres calls the tangent of a block, in the version at hand.
 #ifdef RGBD_POSE_LOCAL_PARAMETERIZATION
 using CeresManifold = ceres::LocalParameterization;
 #else

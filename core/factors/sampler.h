@@ -15,6 +15,7 @@ namespace rgbd_pose {
 // checked: the same for a seed on every platform.
 class FactorSampler {
  public:
+  // The same seed gives the same numbers.
   explicit FactorSampler(uint64_t seed) : random_(seed) {}
 
   // A number in [low, high).

@@ -17,14 +17,15 @@ namespace rgbd_pose {
 // Where the cameras of a pair are mounted on the bodies whose poses are
 // estimated, and which blocks follow the two poses.
 struct PairMounting {
+  // How many mountings are estimated.
   enum Blocks {
     kNone,    // the mountings are constant: those below
     kShared,  // one, body_from_cam of both frames
     kEach,    // two, body_from_cam of `ref` and of `cur`
   };
-  Blocks blocks = kNone;
-  Rigid3d body_from_ref_cam;  // the camera itself by default
-  Rigid3d body_from_cur_cam;
+  Blocks blocks = kNone;      // which of them follow the poses
+  Rigid3d body_from_ref_cam;  // where the camera of `ref` is mounted
+  Rigid3d body_from_cur_cam;  // where that of `cur` is
 };
 
 // A cost over two frames (all matches, all pixels, a prior) under its loss, as
@@ -46,8 +47,10 @@ class PairFactor final : public ceres::CostFunction {
   // of use for costs with another MotionCost::association than kOnce.
   void Associate(const Rigid3d& cur_from_ref);
 
+  // The cost as bound to the frames.
   const MotionCost& cost() const { return *cost_.cost; }
 
+  // Fills in 7 residuals, whose squares add up to twice the cost.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
