@@ -98,6 +98,44 @@ void FactorSingular(int K, const double* hessian, const double* gradient,
   }
 }
 
+// Makes |r|^2 smaller by `excess`, to 2 c, for r[K] and J[K][K] of H[K][K].
+//
+// If H is almost singular, rounding makes |L^-1 g|^2 exceed 2 c. Taking the
+// excess out of the last rows, which belong to the weakest directions, hardly
+// changes J^T r. Where it would, H is too small for its g and c (under a loss
+// that is flat near 0 and then steep, for instance). Then r is divided, and J
+// multiplied, by the same factor: g and c are exact, and H grows, so that
+// steps are shorter.
+inline void TakeExcess(int K, double excess, const double* hessian, double cost,
+                       double* r, double* J) {
+  constexpr double kSameGradient = 1e-6;  // relative, in units of D
+  double left = excess, off = 0.0, whole = 0.0, square = 0.0;
+  for (int k = 0; k < K; ++k) square += r[k] * r[k];
+  double trimmed[12];
+  for (int i = K - 1; i >= 0; --i) {
+    const double rest = std::max(0.0, r[i] * r[i] - std::max(0.0, left));
+    trimmed[i] = std::copysign(std::sqrt(rest), r[i]);
+    left -= r[i] * r[i];
+  }
+  for (int k = 0; k < K; ++k) {
+    if (!(hessian[k * K + k] > 0.0)) continue;
+    double change = 0.0, gradient = 0.0;
+    for (int i = 0; i < K; ++i) {
+      change += J[i * K + k] * (r[i] - trimmed[i]);
+      gradient += J[i * K + k] * r[i];
+    }
+    off += change * change / hessian[k * K + k];
+    whole += gradient * gradient / hessian[k * K + k];
+  }
+  if (!(cost > 0.0) || off <= kSameGradient * kSameGradient * whole) {
+    std::copy(trimmed, trimmed + K, r);
+    return;
+  }
+  const double factor = std::sqrt(square / (2.0 * cost));
+  for (int i = 0; i < K; ++i) r[i] /= factor;
+  for (int i = 0; i < K * K; ++i) J[i] *= factor;
+}
+
 }  // namespace compressed
 
 // Computes residuals r[K + 1] and the Jacobian J[K + 1][K], row by row, that
@@ -124,14 +162,9 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   }
   const double rest = 2.0 * sums.cost - r.template head<K>().squaredNorm();
   r[K] = std::sqrt(std::max(0.0, rest));
-  // If H is almost singular, rounding can make |L^-1 g|^2 exceed 2 c. Taking
-  // the excess out of the last rows, which belong to the weakest directions,
-  // makes the cost exact and hardly changes J^T r.
-  double excess = -rest;
-  for (int i = K - 1; i >= 0 && excess > 0.0; --i) {
-    const double square = r[i] * r[i];
-    r[i] = std::copysign(std::sqrt(std::max(0.0, square - excess)), r[i]);
-    excess -= square;
+  if (rest < 0.0) {
+    compressed::TakeExcess(K, -rest, sums.hessian.data(), sums.cost, residuals,
+                           jacobian);
   }
   return r.allFinite() && J.allFinite();
 }

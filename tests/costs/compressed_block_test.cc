@@ -205,6 +205,38 @@ struct PointResidual {
   }
 };
 
+// Cost and gradient at x, compressed and as plain blocks.
+template <typename Residual>
+void ExpectTheSameGradient(const std::vector<Residual>& residuals,
+                           ceres::LossFunction* loss, std::vector<double> x) {
+  std::vector<double> gradients[2];
+  double costs[2];
+  for (const bool compressed : {false, true}) {
+    ceres::Problem problem(KeepingLosses());
+    AddTo(&problem, residuals, loss, compressed, x.data());
+    ASSERT_TRUE(problem.Evaluate({}, &costs[compressed], nullptr,
+                                 &gradients[compressed], nullptr));
+  }
+  EXPECT_NEAR(costs[1], costs[0], kSameSum * costs[0]);
+  for (size_t k = 0; k < x.size(); ++k) {
+    EXPECT_NEAR(gradients[1][k], gradients[0][k], kSameSum * costs[0]) << k;
+  }
+}
+
+// Behind its flat part this loss is s - 1: the cost of points that all are too
+// far away is smaller than g^T H^-1 g / 2.
+TEST(CompressedBlockTest, GradientIsExactWhereTheCostIsSmall) {
+  ceres::TolerantLoss loss(1.0, 0.02);
+  ExpectTheSameGradient<BlindResidual>({{0.0}, {0.1}, {-0.1}}, &loss,
+                                       {1.3, 7.0});
+  std::vector<PointResidual> points;
+  for (int i = 0; i < 10; ++i) {
+    points.push_back({{std::sin(i), std::cos(2 * i), std::sin(3 * i)}, {}});
+    points.back().q = points.back().p;
+  }
+  ExpectTheSameGradient(points, &loss, {0.01, 0.02, 0.0, 1.2, 0.3, 0.0});
+}
+
 // Whether Ceres finds a covariance for the motion of `count` points that span
 // `dimensions` dimensions (a line, a plane, space), in units of `unit`.
 bool HasCovariance(int count, int dimensions, double unit, int seed,
