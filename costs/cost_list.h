@@ -1,11 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/estimation/motion_cost.h"
+#include "core/util/type_list.h"
 #include "costs/direct/inverse_depth.h"
 #include "costs/direct/photometric.h"
 #include "costs/direct/projective_plane.h"
@@ -20,9 +19,6 @@
 
 namespace rgbd_pose {
 
-template <typename... Types>
-struct TypeList {};
-
 // All residual types over matches. A new cost needs one header and one entry
 // here; its Jacobian test, its benchmark, its name in programs and its place in
 // the assemblies follow from this list.
@@ -34,12 +30,6 @@ using ResidualTypes =
 // All direct residual types, likewise.
 using DirectResidualTypes =
     TypeList<Photometric, InverseDepth, ProjectivePlane>;
-
-// The names of the types, in their order.
-template <typename... Types>
-std::vector<std::string> NamesOfTypes(TypeList<Types...>) {
-  return {Types::kName...};
-}
 
 // A Cost<Type>(options...) of the type with that name, or null.
 template <template <typename> typename Cost, typename... Types,

@@ -173,6 +173,26 @@ struct VectorBlock {
   }
 };
 
+// The velocity of a body in its own axes: [angular (rad/s), linear (m/s)], as
+// in Twist (core/geometry/twist.h).
+struct TwistBlock : VectorBlock<6> {
+  static constexpr char kName[] = "twist";  // for messages
+
+  // A number of the block in words.
+  static std::string NameOf(int k) {
+    return (k < 3 ? "angular velocity about " : "velocity along ") +
+           std::string(1, "xyz"[k % 3]);
+  }
+};
+
+// The inverse of a depth along an optical axis, 1/m.
+struct InverseDepthBlock : VectorBlock<1> {
+  static constexpr char kName[] = "inverse depth";  // for messages
+
+  // Its only number in words.
+  static std::string NameOf(int /*k*/) { return "1/z"; }
+};
+
 // The blocks of a factor, in their order.
 template <typename... Blocks>
 struct BlockList {

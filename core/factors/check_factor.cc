@@ -47,19 +47,31 @@ class Checker {
     }
     rows_ = by_hand.num_residuals();
     worst_.resize(rows_ * columns_.size());
+    for (const BlockKind& kind : kinds) errors_.push_back({kind.name});
     wrong_residuals_.resize(rows_);
   }
 
-  std::string Run(const std::string& name) {
-    int valid = 0, tries = 0;
-    while (valid < options_.samples && tries < kMaxTries * options_.samples) {
-      ++tries;
-      valid += CheckAt(RandomState());
+  void Run() {
+    while (valid_ < options_.samples && tries_ < kMaxTries * options_.samples) {
+      ++tries_;
+      valid_ += CheckAt(RandomState());
     }
+  }
+
+  // By block.
+  std::vector<FactorErrors> Errors() const {
+    std::vector<FactorErrors> errors = errors_;
+    if (valid_ == options_.samples && refused_ == 0) return errors;
+    for (FactorErrors& block : errors) block.autodiff = NAN;
+    return errors;
+  }
+
+  // A line for each mistake.
+  std::string Text(const std::string& name) const {
     std::vector<std::string> lines;
-    if (valid < options_.samples) {
-      lines.push_back("could be evaluated at only " + std::to_string(valid) +
-                      " of " + std::to_string(tries) +
+    if (valid_ < options_.samples) {
+      lines.push_back("could be evaluated at only " + std::to_string(valid_) +
+                      " of " + std::to_string(tries_) +
                       " random states: set CheckFactorOptions::near");
     }
     if (refused_ > 0) {
@@ -188,11 +200,14 @@ class Checker {
         const double by_hand = hand.J(row, k), jet = autodiff.J(row, k),
                      difference = differences(row, k);
         Worst* const worst = &worst_[row * columns_.size() + k];
-        double error =
-            std::abs(by_hand - jet) / size / options_.autodiff_tolerance;
+        FactorErrors* const block = &errors_[columns_[k].block];
+        const double off = std::abs(by_hand - jet) / size;
+        double error = off / options_.autodiff_tolerance;
+        RaiseTo(off, &block->autodiff);
         if (std::isnan(difference)) {
           ++worst->jumps;
         } else {
+          RaiseTo(std::abs(by_hand - difference) / size, &block->differences);
           error = std::max(error, std::abs(jet - difference) / size /
                                       options_.difference_tolerance);
         }
@@ -200,6 +215,11 @@ class Checker {
       }
     }
     return true;
+  }
+
+  // A NaN stays.
+  static void RaiseTo(double error, double* largest) {
+    if (!std::isnan(*largest) && !(error <= *largest)) *largest = error;
   }
 
   static void Update(double error, double hand, double autodiff,
@@ -253,17 +273,17 @@ class Checker {
   FactorSampler random_;
   std::vector<Column> columns_;
   int rows_ = 0;
+  int valid_ = 0, tries_ = 0;           // states
+  std::vector<FactorErrors> errors_;    // by block
   std::vector<Worst> worst_;            // row by row
   std::vector<Worst> wrong_residuals_;  // one per row
   int refused_ = 0;
 };
 
-}  // namespace
-
-std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
-                  const ceres::CostFunction& by_hand,
-                  const ceres::CostFunction& by_autodiff,
-                  const CheckFactorOptions& options) {
+Checker Checked(const std::string& name, const std::vector<BlockKind>& kinds,
+                const ceres::CostFunction& by_hand,
+                const ceres::CostFunction& by_autodiff,
+                const CheckFactorOptions& options) {
   bool fits = options.near.empty() || options.near.size() == kinds.size();
   for (size_t i = 0; fits && i < options.near.size(); ++i) {
     fits = static_cast<int>(options.near[i].size()) == kinds[i].size;
@@ -272,7 +292,26 @@ std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
     throw InputError("CheckFactorOptions::near must have the " +
                      std::to_string(kinds.size()) + " blocks of " + name);
   }
-  return Checker(kinds, by_hand, by_autodiff, options).Run(name);
+  Checker checker(kinds, by_hand, by_autodiff, options);
+  checker.Run();
+  return checker;
+}
+
+}  // namespace
+
+std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
+                  const ceres::CostFunction& by_hand,
+                  const ceres::CostFunction& by_autodiff,
+                  const CheckFactorOptions& options) {
+  return Checked(name, kinds, by_hand, by_autodiff, options).Text(name);
+}
+
+std::vector<FactorErrors> Errors(const std::string& name,
+                                 const std::vector<BlockKind>& kinds,
+                                 const ceres::CostFunction& by_hand,
+                                 const ceres::CostFunction& by_autodiff,
+                                 const CheckFactorOptions& options) {
+  return Checked(name, kinds, by_hand, by_autodiff, options).Errors();
 }
 
 }  // namespace rgbd_pose::factors

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/factors/blocks.h"
@@ -26,9 +27,17 @@ struct CheckFactorOptions {
   // The blocks of a state, and by how much (rad and units) each direction of
   // the tangents of random states differs from it, for factors that cannot be
   // evaluated just anywhere. Empty: any rotation, positions up to 2 m, other
-  // numbers up to 1.
+  // numbers up to 1; or near Factor::Near(), if there is one.
   std::vector<std::vector<double>> near;
   double spread = 0.1;
+};
+
+// The largest errors of a Jacobian by one block over random states, relative to
+// the largest entry of the row. NaN if a state cannot be evaluated.
+struct FactorErrors {
+  std::string block;         // the name of its type
+  double autodiff = 0.0;     // by hand against automatic differentiation
+  double differences = 0.0;  // by hand against central differences
 };
 
 namespace factors {
@@ -60,6 +69,30 @@ std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
                   const ceres::CostFunction& by_autodiff,
                   const CheckFactorOptions& options);
 
+std::vector<FactorErrors> Errors(const std::string& name,
+                                 const std::vector<BlockKind>& kinds,
+                                 const ceres::CostFunction& by_hand,
+                                 const ceres::CostFunction& by_autodiff,
+                                 const CheckFactorOptions& options);
+
+// Detects a state at which a factor can be evaluated.
+template <typename Factor, typename = void>
+constexpr bool kHasNear = false;
+template <typename Factor>
+constexpr bool kHasNear<Factor, std::void_t<decltype(&Factor::Near)>> = true;
+
+// Calls check(name, kinds, by_hand, by_autodiff, options).
+template <typename Factor, typename Check>
+auto With(const Factor& factor, CheckFactorOptions options, Check check) {
+  if constexpr (kHasNear<Factor>) {
+    if (options.near.empty()) options.near = Factor::Near();
+  }
+  const std::unique_ptr<ceres::CostFunction> by_hand(MakeFactor(factor));
+  const std::unique_ptr<ceres::CostFunction> oracle(MakeAutodiffFactor(factor));
+  return check(Factor::kName, KindsOf(typename Factor::Blocks()), *by_hand,
+               *oracle, options);
+}
+
 }  // namespace factors
 
 // Compares the hand-written Jacobian of a factor with automatic differentiation
@@ -69,11 +102,15 @@ std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
 template <typename Factor>
 std::string CheckFactor(const Factor& factor,
                         const CheckFactorOptions& options = {}) {
-  const std::unique_ptr<ceres::CostFunction> by_hand(MakeFactor(factor));
-  const std::unique_ptr<ceres::CostFunction> oracle(MakeAutodiffFactor(factor));
-  return factors::Check(Factor::kName,
-                        factors::KindsOf(typename Factor::Blocks()), *by_hand,
-                        *oracle, options);
+  return factors::With(factor, options, factors::Check);
+}
+
+// The same as figures: the errors of the Jacobian by each block, in their
+// order.
+template <typename Factor>
+std::vector<FactorErrors> ErrorsOfFactor(
+    const Factor& factor, const CheckFactorOptions& options = {}) {
+  return factors::With(factor, options, factors::Errors);
 }
 
 }  // namespace rgbd_pose

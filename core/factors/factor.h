@@ -24,7 +24,12 @@
 //
 // Residuals are whitened: one sigma is 1. Jacobian fills in r, too, and is by
 // hand, in the tangent (core/factors/blocks.h); a factor without it is
-// differentiated automatically. False rejects the step, as in Ceres.
+// differentiated automatically. False rejects the step, as in Ceres. To be in
+// FactorTypes (costs/factors/factor_list.h) it also has
+//
+//   static Factor Sample(FactorSampler* random);   with random measurements
+//   static std::vector<std::vector<double>> Near();  optional: a state near
+//                                          which it can be evaluated
 
 namespace rgbd_pose {
 namespace factors {

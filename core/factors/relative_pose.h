@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "core/factors/blocks.h"
+#include "core/factors/rotations.h"
 #include "core/factors/sampler.h"
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
@@ -17,7 +18,7 @@ namespace rgbd_pose {
 // where R = R_cur^T R_ref turns the axes of `ref` into those of `cur` and C =
 // R_ref^T (p_cur - p_ref) is the position of `cur` in the axes of `ref`. To
 // first order 2 vec q is omega in Exp(omega) = R R_m^T; it increases up to half
-// a turn, as omega does.
+// a turn, as omega does (core/factors/rotations.h).
 struct RelativePoseFactor {
   static constexpr char kName[] = "relative_pose";
   using Blocks = BlockList<PoseBlock, PoseBlock>;
@@ -35,12 +36,12 @@ struct RelativePoseFactor {
   bool Residual(const PoseOf<T>& ref, const PoseOf<T>& cur, T* r) const {
     const Eigen::Quaternion<T> ref_from_cur_measured =
         cur_from_ref.rotation.conjugate().template cast<T>();
-    Eigen::Quaternion<T> q = cur.q.conjugate() * ref.q * ref_from_cur_measured;
-    if (q.w() < T(0.0)) q.coeffs() = -q.coeffs();
+    const Eigen::Quaternion<T> q =
+        cur.q.conjugate() * ref.q * ref_from_cur_measured;
     const Eigen::Matrix<T, 3, 1> C =
         ref.q.conjugate() * Eigen::Matrix<T, 3, 1>(cur.p - ref.p);
     Eigen::Matrix<T, 6, 1> e;
-    e << T(2.0) * q.vec(), C - MeasuredC().template cast<T>();
+    e << RotationError(q), C - MeasuredC().template cast<T>();
     Eigen::Map<Eigen::Matrix<T, 6, 1>> whitened(r);
     whitened = sqrt_information.template cast<T>() * e;
     return true;
@@ -50,16 +51,13 @@ struct RelativePoseFactor {
                 ByPose* by_ref, ByPose* by_cur) const {
     const Eigen::Matrix3d ref_from_world = ref.R().transpose();
     const Eigen::Quaterniond turn = cur.q.conjugate() * ref.q;
-    Eigen::Quaterniond q = turn * cur_from_ref.rotation.conjugate();
-    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+    const Eigen::Quaterniond q = turn * cur_from_ref.rotation.conjugate();
     const Eigen::Vector3d C = ref_from_world * (cur.p - ref.p);
     MotionVector e;
-    e << 2.0 * q.vec(), C - MeasuredC();
+    e << RotationError(q), C - MeasuredC();
     Eigen::Map<MotionVector>(r, 6) = sqrt_information * e;
-    // Exp(omega) q changes 2 vec q by w omega + omega x vec q, and R becomes
-    // Exp(R omega_ref - omega_cur) R.
-    const Eigen::Matrix3d by_omega =
-        q.w() * Eigen::Matrix3d::Identity() - CrossMatrix(q.vec());
+    // R becomes Exp(R omega_ref - omega_cur) R.
+    const Eigen::Matrix3d by_omega = RotationErrorJacobian(q);
     by_ref->leftCols<3>() =
         sqrt_information.leftCols<3>() * (by_omega * turn.toRotationMatrix()) +
         sqrt_information.rightCols<3>() * CrossMatrix(C);
