@@ -16,9 +16,9 @@ function is_trivial(line) {
 }
 function is_described_elsewhere(line) {
   return line ~ /^ *static constexpr (char|const char\*|int) (kName|kRows)/ ||
-         line ~ /^ *using (Blocks|ByPose) =/ ||
+         line ~ /^ *using (Blocks|By[A-Za-z]+) =/ ||
          line ~ / override( \{.*|;)$/ ||
-         line ~ /^ *(bool (Residual|Jacobian)|static [A-Za-z]+Factor Sample)\(/
+         line ~ /^ *(bool (Residual|Jacobian)|static [A-Za-z]+Factor Sample|static std::vector<std::vector<double>> Near)\(/
 }
 {
   place = index($0, "//")

@@ -27,9 +27,11 @@
 // differentiated automatically. False rejects the step, as in Ceres. To be in
 // FactorTypes (costs/factors/factor_list.h) it also has
 //
-//   static Factor Sample(FactorSampler* random);   with random measurements
-//   static std::vector<std::vector<double>> Near();  optional: a state near
-//                                          which it can be evaluated
+//     static Factor Sample(FactorSampler* random);   random measurements
+//     static std::vector<std::vector<double>> Near();
+//
+// Near is for a factor that cannot be evaluated just anywhere: blocks near
+// which it can.
 
 namespace rgbd_pose {
 namespace factors {
