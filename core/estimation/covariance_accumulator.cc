@@ -184,6 +184,7 @@ NormalEquations CovarianceAccumulator::Linearise(
     // The sum may be indefinite: then some direction is not determined.
     shares_[i].hessian = LessSpurious(share.hessian, times * spurious);
     share.hessian -= times * spurious;
+    shares_[i].gradient = share.gradient;
     sum.hessian += share.hessian;
     sum.gradient += share.gradient;
     sum.cost += share.cost;
@@ -206,6 +207,49 @@ MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& problem,
     shares_[i].scatter /= term.cost->information_factor();
   }
   return RobustCovariance(shares_, inverse);
+}
+
+// The estimate is a mean of both, nearer to the more certain one. With the
+// information of the priors L L^T and e = L^-1 gradient, their difference from
+// the estimate in sigmas, the covariance of e is I - L^T covariance L: where
+// nothing else determines the motion, the estimate is the prior, and e tells
+// nothing.
+double CovarianceAccumulator::PriorChiSquared(
+    const MotionMatrix& covariance) const {
+  constexpr double kTellsNothing = 1e-3;
+  MotionMatrix information = MotionMatrix::Zero();
+  MotionVector gradient = MotionVector::Zero();
+  for (const CovarianceTerm& term : shares_) {
+    if (term.scale_group != MotionCost::kFixedScale) continue;
+    information += term.hessian;
+    gradient += term.gradient;
+  }
+  if (information.isZero()) return 0.0;
+  // A prior may tell of some directions only: L is a symmetric root.
+  const auto prior = EigenOf(information);
+  const double least =
+      kTellsNothing * kTellsNothing * prior.eigenvalues().maxCoeff();
+  MotionVector root = MotionVector::Zero(), inverse_root = root;
+  for (int k = 0; k < 6; ++k) {
+    if (!(prior.eigenvalues()[k] > least)) continue;
+    root[k] = std::sqrt(prior.eigenvalues()[k]);
+    inverse_root[k] = 1.0 / root[k];
+  }
+  const MotionMatrix axes = prior.eigenvectors();
+  const MotionVector e =
+      inverse_root.asDiagonal() * (axes.transpose() * gradient);
+  const MotionMatrix of_e = MotionMatrix::Identity() -
+                            MotionMatrix(root.asDiagonal() * axes.transpose() *
+                                         covariance * axes * root.asDiagonal());
+  const auto scatter = EigenOf(of_e);
+  double chi_squared = 0.0;
+  for (int k = 0; k < 6; ++k) {
+    if (!(scatter.eigenvalues()[k] > kTellsNothing)) continue;
+    const MotionVector axis = scatter.eigenvectors().col(k);
+    const double along = axis.dot(e);
+    chi_squared += along * along / scatter.eigenvalues()[k];
+  }
+  return chi_squared;
 }
 
 }  // namespace rgbd_pose

@@ -34,6 +34,7 @@ struct LossSums {
 struct CovarianceTerm {
   MotionMatrix hessian;  // weighted by rho'
   MotionMatrix scatter;  // sum rho'^2 J^T r r^T J, unless `is_whitened`
+  MotionVector gradient = MotionVector::Zero();
   bool is_whitened;
   int scale_group;  // as in MotionCost
   LossSums sums;
@@ -77,6 +78,10 @@ class CovarianceAccumulator {
   MotionMatrix Covariance(const RobustProblem& problem,
                           const MotionDerivatives& motion,
                           const MotionMatrix& inverse);
+
+  // Chi^2 of six degrees of freedom of the difference between what priors say
+  // and what everything else says. `covariance` is that of the estimate.
+  double PriorChiSquared(const MotionMatrix& covariance) const;
 
  private:
   std::vector<CovarianceTerm> shares_;

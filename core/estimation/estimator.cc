@@ -15,6 +15,9 @@ namespace {
 // Above this share of inliers, the outliers are few or just large noise.
 constexpr double kHardlyWrong = 0.95;
 
+// Chi^2 of six degrees of freedom that is as rare as five sigmas.
+constexpr double kFiveSigmas = 40.9;
+
 std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
                                 std::unique_ptr<ceres::LossFunction> loss) {
   if (cost == nullptr) throw InputError("an estimator needs a cost");
@@ -163,6 +166,9 @@ class Estimator::Impl {
                      std::to_string(used) +
                      " matches agree with one motion, as many as wrong ones "
                      "may by chance";
+    } else if (shares_.PriorChiSquared(out_->covariance) > kFiveSigmas) {
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason = "inconsistent with the prior";
     } else if (!minimiser_.converged()) {
       out_->status = EstimateStatus::kNotConverged;
       out_->reason =

@@ -14,7 +14,7 @@ enum class EstimateStatus {
   kTooFewMatches,  // fewer than three usable matches
   kDegenerate,     // some direction of motion is not determined
   kNotConverged,   // the solver gave up
-  kInconsistent,   // too few matches agree with one motion
+  kInconsistent,   // matches, or matches and a prior, do not agree
 };
 
 // The name printed by programs.

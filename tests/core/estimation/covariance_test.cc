@@ -131,6 +131,31 @@ TEST(CovarianceOfAPriorTest, IsHonestWhereTheScaleIsEstimated) {
   }
 }
 
+// A prior with a wrong mean and no loss moves the estimate by many sigmas of
+// the matches, or is moved by many of its own. (A prior that is more exact than
+// the matches by far, so that they do not contradict it, cannot be noticed.)
+TEST(CovarianceOfAPriorTest, AWrongPriorIsNoticed) {
+  Estimator estimator(
+      {}, MakeRobustCosts("reprojection_depth+motion_prior", "none,none"));
+  for (const double sigma : {1e-3, 3e-3, 1e-2}) {
+    for (int seed = 0; seed < 30; ++seed) {
+      RandomWorld world(4000 + seed);
+      const Rigid3d truth = world.Motion(0.05, 0.05);
+      const Correspondences matches =
+          world.Matches(kCovarianceMatches, 0.0, truth);
+      MotionPrior prior = world.Prior(truth, sigma);
+      const MotionEstimate right =
+          estimator.Estimate(matches, Rigid3d(), &prior);
+      EXPECT_TRUE(right.ok()) << right.reason << ", sigma " << sigma;
+      prior.mean.translation += 20.0 * sigma * Eigen::Vector3d::Unit(seed % 3);
+      const MotionEstimate wrong =
+          estimator.Estimate(matches, Rigid3d(), &prior);
+      EXPECT_EQ(wrong.status, EstimateStatus::kInconsistent)
+          << "sigma " << sigma << ", seed " << seed;
+    }
+  }
+}
+
 std::string SceneName(const ::testing::TestParamInfo<Scene>& info) {
   const auto percent = [](double share) {
     return std::to_string(static_cast<int>(100.0 * share));
