@@ -31,6 +31,7 @@ room() {
 room core/util core 'Eigen/|ceres/|fcntl.h|sys/|unistd.h'
 room core/geometry core 'Eigen/'
 room core/estimation core 'Eigen/|ceres/'
+room core/inertial core 'Eigen/'
 room core/factors core 'Eigen/|ceres/'
 room core/pose_graph core 'Eigen/|ceres/'
 room core/initial_guess core 'Eigen/'
