@@ -119,9 +119,10 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
         if (!signal.name().empty()) ended_by = signal.name();
         return ended_by.empty();
       });
-  Warn(DroppedFrames(*source, run->damaged()));
+  Warn(DroppedFrames(*source, run->damaged(), run->repeated()));
   if (!stopped.empty()) return stopped;
-  return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
+  const size_t left_out = run->damaged().size() + run->repeated().color;
+  return run->frames().size() + left_out == size ? "" : ended_by;
 }
 
 int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,

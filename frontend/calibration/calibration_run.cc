@@ -94,7 +94,8 @@ RecordingCalibration CalibrateRecording(
                            });
     all.damaged = static_cast<int>(run.damaged().size());
     all.left_out = opened.remarks;
-    for (const auto& line : DroppedFrames(*opened.source, run.damaged())) {
+    for (const auto& line :
+         DroppedFrames(*opened.source, run.damaged(), run.repeated())) {
       all.left_out.push_back(line);
     }
     const Trajectory* const truth = opened.GroundTruth();

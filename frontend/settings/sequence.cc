@@ -135,8 +135,9 @@ const Trajectory* Sequence::GroundTruth() {
   return is_there ? &*ground_truth : nullptr;
 }
 
-std::vector<std::string> DroppedFrames(
-    const FrameSource& source, const std::vector<std::string>& damaged) {
+std::vector<std::string> DroppedFrames(const FrameSource& source,
+                                       const std::vector<std::string>& damaged,
+                                       const RepeatedCounts& repeated) {
   constexpr int kMaxNamed = 10;
   const int count = static_cast<int>(damaged.size());
   std::vector<std::string> lines;
@@ -147,10 +148,17 @@ std::vector<std::string> DroppedFrames(
        {std::pair(count - kMaxNamed, " further frames are damaged"),
         {source.unmatched_color(),
          " colour images have no depth image of the same time"},
+        {repeated.color,
+         " frames repeat the colour image before them under a new time stamp"},
         {source.dropped(),
          " frames arrived faster than they were processed"}}) {
     if (number <= 0) continue;
     lines.push_back(std::to_string(number) + what + " and are left out");
+  }
+  if (repeated.depth > 0) {
+    lines.push_back(std::to_string(repeated.depth) +
+                    " frames repeat the depth image before them, which is not "
+                    "used again");
   }
   for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;

@@ -9,6 +9,7 @@
 #include "core/evaluation/truth_noise.h"
 #include "frontend/settings/settings.h"
 #include "frontend/sources/frame_source.h"
+#include "frontend/sources/repeated_images.h"
 
 namespace rgbd_pose {
 
@@ -53,9 +54,11 @@ struct Sequence {
 };
 
 // Describes input that produced no frame so far, one line each, for users: the
-// first damaged frames, colour images without depth, frames that came too fast.
+// first damaged frames, colour images without depth, images that were sent
+// twice, frames that came too fast.
 std::vector<std::string> DroppedFrames(const FrameSource& source,
-                                       const std::vector<std::string>& damaged);
+                                       const std::vector<std::string>& damaged,
+                                       const RepeatedCounts& repeated = {});
 
 // Opens a sequence. `keep_color`: whether to fill Frame::color. `camera`:
 // overrides the camera of the settings unless null. Throws InputError for all

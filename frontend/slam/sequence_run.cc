@@ -63,11 +63,15 @@ std::string TrackAll(FrameSource* source, int threads,
   FrameStream stream(
       source, [&first](const PreparedFrame& frame) { first.Prepare(frame); },
       threads, runs.front()->inputs().max_damaged);
-  while (const std::optional<StreamedFrame> next = stream.Next()) {
+  RepeatedImages repeated;
+  while (std::optional<StreamedFrame> next = stream.Next()) {
+    if (!repeated.IsNew(&next->frame)) continue;
     for (SequenceRun* run : runs) run->Add(*next);
     if (on_frame && !on_frame(next->frame)) break;
   }
-  for (SequenceRun* run : runs) run->set_damaged(stream.damaged());
+  for (SequenceRun* run : runs) {
+    run->SetLeftOut(stream.damaged(), repeated.counts());
+  }
   return stream.stopped();
 }
 

@@ -16,6 +16,7 @@
 #include "frontend/slam/slam.h"
 #include "frontend/sources/frame_source.h"
 #include "frontend/sources/frame_stream.h"
+#include "frontend/sources/repeated_images.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
@@ -38,8 +39,9 @@ struct ResidualHistogram {
 };
 
 struct RunResults {
-  std::vector<TrackedFrame> frames;  // one per input frame, in order
+  std::vector<TrackedFrame> frames;  // of the input frames used, in order
   std::vector<std::string> damaged;  // input frames left out, and why
+  RepeatedCounts repeated;           // images that were sent twice
   Trajectory trajectory;             // of the frames that were not lost
   ResidualHistogram residuals;       // of the matches
 
@@ -87,8 +89,13 @@ class SequenceRun {
   // All frames so far, and those that could not be read.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
   const std::vector<std::string>& damaged() const { return results_.damaged; }
-  void set_damaged(const std::vector<std::string>& damaged) {
+  const RepeatedCounts& repeated() const { return results_.repeated; }
+
+  // What else became of the frames of the source, after the last one.
+  void SetLeftOut(const std::vector<std::string>& damaged,
+                  const RepeatedCounts& repeated) {
     results_.damaged = damaged;
+    results_.repeated = repeated;
   }
 
   // The current poses of the frames that were not lost.

@@ -1,0 +1,40 @@
+#include "frontend/sources/repeated_images.h"
+
+#include <cstring>
+
+namespace rgbd_pose {
+namespace {
+
+// Whether an image shows something and is the same as another one.
+bool IsRepeated(const cv::Mat& image, const cv::Mat& before) {
+  if (image.size() != before.size() || image.type() != before.type()) {
+    return false;
+  }
+  const size_t bytes = image.cols * image.elemSize();
+  for (int row = 0; row < image.rows; ++row) {
+    if (std::memcmp(image.ptr(row), before.ptr(row), bytes) != 0) return false;
+  }
+  double least = 0.0, most = 0.0;
+  cv::minMaxLoc(image, &least, &most);
+  return least < most;
+}
+
+}  // namespace
+
+bool RepeatedImages::IsNew(Frame* frame) {
+  const bool has_color = !IsRepeated(frame->gray, gray_);
+  const bool has_depth = !IsRepeated(frame->depth, depth_);
+  gray_ = frame->gray;
+  depth_ = frame->depth;
+  if (!has_color) {
+    ++counts_.color;
+    return false;
+  }
+  if (!has_depth) {
+    ++counts_.depth;
+    frame->depth = cv::Mat::zeros(frame->depth.size(), frame->depth.type());
+  }
+  return true;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,79 @@
+#include "frontend/sources/repeated_images.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <tuple>
+
+namespace rgbd_pose {
+namespace {
+
+cv::Mat Noise(int type, int seed) {
+  cv::Mat image(48, 64, type);
+  cv::RNG random(seed);
+  random.fill(image, cv::RNG::UNIFORM, 1, 200);
+  return image;
+}
+
+Frame FrameOf(const cv::Mat& gray, const cv::Mat& depth) {
+  Frame frame;
+  frame.gray = gray.clone();  // a driver sends a copy
+  frame.depth = depth.clone();
+  return frame;
+}
+
+class RepeatedImagesTest : public testing::Test {
+ protected:
+  const cv::Mat gray_[2] = {Noise(CV_8UC1, 1), Noise(CV_8UC1, 2)};
+  const cv::Mat depth_[2] = {Noise(CV_16UC1, 3), Noise(CV_16UC1, 4)};
+  RepeatedImages images_;
+};
+
+TEST_F(RepeatedImagesTest, LeavesOutFramesWithoutANewColourImage) {
+  for (const auto& [gray, depth, is_new] :
+       {std::tuple(0, 0, true), {0, 1, false}, {0, 1, false}, {1, 0, true}}) {
+    Frame frame = FrameOf(gray_[gray], depth_[depth]);
+    EXPECT_EQ(images_.IsNew(&frame), is_new);
+  }
+  EXPECT_EQ(images_.counts().color, 2);
+  EXPECT_EQ(images_.counts().depth, 0);
+}
+
+TEST_F(RepeatedImagesTest, DoesNotUseADepthImageTwice) {
+  Frame first = FrameOf(gray_[0], depth_[0]);
+  Frame second = FrameOf(gray_[1], depth_[0]);
+  Frame third = FrameOf(gray_[0], depth_[1]);
+  const cv::Mat sent = second.depth;
+  for (Frame* frame : {&first, &second, &third}) {
+    EXPECT_TRUE(images_.IsNew(frame));
+  }
+  EXPECT_EQ(images_.counts().depth, 1);
+  EXPECT_EQ(cv::countNonZero(first.depth), 48 * 64);
+  EXPECT_EQ(cv::countNonZero(second.depth), 0);
+  EXPECT_EQ(cv::countNonZero(third.depth), 48 * 64);
+  EXPECT_EQ(cv::countNonZero(sent), 48 * 64) << "images are shared";
+}
+
+// One pixel may be all that differs between two images without noise.
+TEST_F(RepeatedImagesTest, OnePixelMakesAnImageNew) {
+  Frame first = FrameOf(gray_[0], depth_[0]);
+  Frame second = first;
+  second.gray = first.gray.clone();
+  second.gray.at<uint8_t>(47, 63) ^= 1;
+  EXPECT_TRUE(images_.IsNew(&first));
+  EXPECT_TRUE(images_.IsNew(&second));
+}
+
+TEST_F(RepeatedImagesTest, DarkImagesMayBeEqual) {
+  const cv::Mat black = cv::Mat::zeros(48, 64, CV_8UC1);
+  const cv::Mat none = cv::Mat::zeros(48, 64, CV_16UC1);
+  for (int i = 0; i < 3; ++i) {
+    Frame frame = FrameOf(black, none);
+    EXPECT_TRUE(images_.IsNew(&frame));
+  }
+  EXPECT_EQ(images_.counts().color, 0);
+  EXPECT_EQ(images_.counts().depth, 0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
