@@ -7,6 +7,8 @@
 #include "costs/factors/constant_velocity.h"
 #include "costs/factors/distance.h"
 #include "costs/factors/gravity.h"
+#include "costs/factors/gyroscope.h"
+#include "costs/factors/inertial.h"
 #include "costs/factors/landmark.h"
 #include "costs/factors/map_plane.h"
 #include "costs/factors/relative_rotation.h"
@@ -19,6 +21,7 @@ namespace rgbd_pose {
 using FactorTypes =
     TypeList<AbsolutePoseFactor, AbsolutePositionFactor, RelativePoseFactor,
              RelativeRotationFactor, GravityFactor, ConstantVelocityFactor,
-             DistanceFactor, MapPlaneFactor, LandmarkFactor>;
+             DistanceFactor, MapPlaneFactor, LandmarkFactor, GyroscopeFactor,
+             InertialFactor>;
 
 }  // namespace rgbd_pose

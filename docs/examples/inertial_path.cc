@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "rgbd_pose/core/factors/factor.h"
-#include "rgbd_pose/core/factors/inertial.h"
 #include "rgbd_pose/core/factors/pose_manifold.h"
 #include "rgbd_pose/core/inertial/imu_buffer.h"
 #include "rgbd_pose/core/util/input_error.h"
 #include "rgbd_pose/core/util/text_file.h"
+#include "rgbd_pose/costs/factors/inertial.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "core/factors/blocks.h"
-#include "core/factors/rotation_error.h"
+#include "core/factors/rotations.h"
 #include "core/factors/sampler.h"
 #include "core/inertial/preintegration.h"
 
@@ -60,7 +60,7 @@ struct InertialFactor {
     const Eigen::Matrix<T, 9, 1> correction = motion.by_bias.cast<T>() * db;
     const Eigen::Quaternion<T> R_m =
         motion.start_from_end.cast<T>() *
-        SmallTurn(Vector3<T>(correction.template head<3>()));
+        RotationBy(Vector3<T>(correction.template head<3>()));
     const Eigen::Quaternion<T> to_i = i.q.conjugate();
     const Vector3<T> g = gravity.cast<T>();
     Eigen::Matrix<T, kRows, 1> e;
@@ -86,21 +86,20 @@ struct InertialFactor {
     const Eigen::Matrix<double, 9, 1> correction =
         motion.by_bias * (b_i - motion.bias);
     const Eigen::Vector3d turn = correction.head<3>();
-    const Eigen::Quaterniond R_m = motion.start_from_end * SmallTurn(turn);
-    const Eigen::Quaterniond q =
-        Shorter(Eigen::Quaterniond(R_m.conjugate() * (i.q.conjugate() * j.q)));
+    const Eigen::Quaterniond R_m = motion.start_from_end * RotationBy(turn);
+    const Eigen::Quaterniond q = R_m.conjugate() * (i.q.conjugate() * j.q);
     const Eigen::Matrix3d to_i = i.R().transpose();
     const Eigen::Vector3d v = to_i * (v_j - v_i - t * gravity);
     const Eigen::Vector3d p =
         to_i * (j.p - i.p - t * v_i - 0.5 * t * t * gravity);
     Eigen::Matrix<double, kRows, 1> e;
-    e << 2.0 * q.vec(), v - motion.v - correction.segment<3>(3),
+    e << RotationError(q), v - motion.v - correction.segment<3>(3),
         p - motion.p - correction.tail<3>(), b_j - b_i;
     Eigen::Map<Eigen::Matrix<double, kRows, 1>>(r, kRows) =
         sqrt_information * e;
 
     // R_m Exp(a) and R_i Exp(b) turn q from the left by -a and by -R_m^T b.
-    const Eigen::Matrix3d by_left = RotationErrorByLeft(q);
+    const Eigen::Matrix3d by_left = RotationErrorJacobian(q);
     const auto& S = sqrt_information;
     const auto S_omega = S.leftCols<3>();
     const auto S_v = S.middleCols<3>(3);
@@ -108,7 +107,7 @@ struct InertialFactor {
     by_i->leftCols<3>() =
         S_omega * (-by_left * R_m.toRotationMatrix().transpose()) +
         S_v * CrossMatrix(v) + S_p * CrossMatrix(p);
-    by_j->leftCols<3>() = S_omega * RotationErrorByRight(q);
+    by_j->leftCols<3>() = S_omega * RotationErrorJacobian(q).transpose();
     by_j->rightCols<3>() = S_p * to_i;
     by_i->rightCols<3>() = -by_j->rightCols<3>();
     *by_v_j = S_v * to_i;
@@ -116,7 +115,7 @@ struct InertialFactor {
     *by_b_j = S.rightCols<6>();
     Eigen::Matrix<double, 9, 6> e_by_bias = -motion.by_bias;
     e_by_bias.topRows<3>() =
-        -by_left * SmallTurnJacobian(turn) * motion.by_bias.topRows<3>();
+        -by_left * RotationByJacobian(turn) * motion.by_bias.topRows<3>();
     *by_b_i = S.leftCols<9>() * e_by_bias - *by_b_j;
     return true;
   }

@@ -1,4 +1,4 @@
-#include "core/factors/inertial.h"
+#include "costs/factors/inertial.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/factors/gyroscope.h"
+#include "costs/factors/gyroscope.h"
 
 #include <gtest/gtest.h>
 

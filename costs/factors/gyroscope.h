@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "core/factors/blocks.h"
-#include "core/factors/rotation_error.h"
+#include "core/factors/rotations.h"
 #include "core/factors/sampler.h"
 #include "core/factors/sqrt_information.h"
 #include "core/inertial/preintegration.h"
@@ -47,7 +47,7 @@ struct GyroscopeFactor {
     const Eigen::Matrix<T, 3, 1> turn =
         by_bias.cast<T>() *
         Eigen::Matrix<T, 3, 1>(bias - integrated_bias.cast<T>());
-    const Eigen::Quaternion<T> R_m = i_from_j.cast<T>() * SmallTurn(turn);
+    const Eigen::Quaternion<T> R_m = i_from_j.cast<T>() * RotationBy(turn);
     const Eigen::Quaternion<T> q = R_m.conjugate() * (i.q.conjugate() * j.q);
     Eigen::Map<Eigen::Matrix<T, 3, 1>> whitened(r);
     whitened = sqrt_information.cast<T>() * RotationError(q);
@@ -60,17 +60,18 @@ struct GyroscopeFactor {
                 ByPose* by_j,
                 TangentJacobian<kRows, VectorBlock<3>>* by_b) const {
     const Eigen::Vector3d turn = by_bias * (bias - integrated_bias);
-    const Eigen::Quaterniond R_m = i_from_j * SmallTurn(turn);
-    const Eigen::Quaterniond q =
-        Shorter(Eigen::Quaterniond(R_m.conjugate() * (i.q.conjugate() * j.q)));
-    Eigen::Map<Eigen::Vector3d>(r, 3) = sqrt_information * (2.0 * q.vec());
+    const Eigen::Quaterniond R_m = i_from_j * RotationBy(turn);
+    const Eigen::Quaterniond q = R_m.conjugate() * (i.q.conjugate() * j.q);
+    Eigen::Map<Eigen::Vector3d>(r, 3) = sqrt_information * RotationError(q);
     // R_m Exp(a) and R_i Exp(b) turn q from the left by -a and by -R_m^T b.
-    const Eigen::Matrix3d by_left = -sqrt_information * RotationErrorByLeft(q);
+    const Eigen::Matrix3d by_left =
+        -sqrt_information * RotationErrorJacobian(q);
     by_i->setZero();
     by_i->leftCols<3>() = by_left * R_m.toRotationMatrix().transpose();
     by_j->setZero();
-    by_j->leftCols<3>() = sqrt_information * RotationErrorByRight(q);
-    *by_b = by_left * SmallTurnJacobian(turn) * by_bias;
+    by_j->leftCols<3>() =
+        sqrt_information * RotationErrorJacobian(q).transpose();
+    *by_b = by_left * RotationByJacobian(turn) * by_bias;
     return true;
   }
 

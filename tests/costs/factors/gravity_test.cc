@@ -1,4 +1,4 @@
-#include "core/factors/gravity.h"
+#include "costs/factors/gravity.h"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,6 @@
 
 namespace rgbd_pose {
 namespace {
-
-TEST(GravityFactorTest, JacobianIsRight) {
-  FactorSampler random(1);
-  for (int i = 0; i < 10; ++i) {
-    EXPECT_EQ(CheckFactor(GravityFactor::Sample(&random)), "");
-  }
-}
 
 // What an accelerometer at rest measures is up, in the axes of the body.
 TEST(GravityFactorTest, IsZeroAtRest) {
