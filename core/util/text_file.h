@@ -10,8 +10,8 @@ namespace rgbd_pose {
 
 // One data line of a text table, without comments.
 struct TextLine {
-  int number = 0;  // 1-based, for messages
-  std::vector<std::string> words;
+  int number = 0;                  // 1-based, for messages
+  std::vector<std::string> words;  // its columns
 };
 
 // The lines of a file with columns separated by white space or commas, without
