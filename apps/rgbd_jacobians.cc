@@ -3,21 +3,27 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "apps/shell/program.h"
+#include "core/factors/check_factor.h"
 #include "core/geometry/motion.h"
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "costs/assembly/cost_blocks.h"
 #include "costs/cost_factory.h"
 #include "costs/cost_list.h"
+#include "costs/factors/factor_list.h"
 #include "frontend/simulation/synthetic_matches.h"
 
-DEFINE_int32(samples, 1000, "random motions and matches for each cost");
+DEFINE_int32(samples, 1000, "random states for each cost and factor");
 DEFINE_uint32(seed, 1, "seed of the samples");
-DEFINE_string(cost, "", "one cost; empty: all");
+DEFINE_string(cost, "", "one cost, and no factor; empty: all");
+DEFINE_string(factor, "", "one factor, and no cost; empty: all");
 
 namespace rgbd_pose {
 namespace {
@@ -76,9 +82,25 @@ Errors ErrorsOf(const Jacobian& actual, const Jacobian& expected) {
   return errors;
 }
 
+// Prints one line, of a part of a Jacobian. Returns whether it is right.
+bool PrintLine(const std::string& name, const std::string& part,
+               double autodiff, double differences) {
+  const bool good =
+      autodiff <= kJetTolerance && differences <= kDifferenceTolerance;
+  std::printf("%-20s %-24s %12.1e %12.1e  %s\n", name.c_str(), part.c_str(),
+              autodiff, differences, good ? "ok" : "WRONG");
+  return good;
+}
+
+// Whether a cost or a factor is to be checked; `other` is the other's flag.
+bool IsWanted(const std::string& flag, const std::string& other,
+              const std::string& name) {
+  return flag == name || (flag.empty() && other.empty());
+}
+
 template <typename Residual>
-bool Report() {
-  if (!FLAGS_cost.empty() && FLAGS_cost != Residual::kName) return true;
+bool ReportCost() {
+  if (!IsWanted(FLAGS_cost, FLAGS_factor, Residual::kName)) return true;
   Errors jet = Errors::Zero(Residual::kRows, 2);
   Errors differences = jet;
   RandomWorld world(FLAGS_seed);
@@ -96,23 +118,58 @@ bool Report() {
   bool passed = true;
   for (int row = 0; row < Residual::kRows; ++row) {
     for (int half = 0; half < 2; ++half) {
-      const std::string block =
-          "row " + std::to_string(row) + (half == 0 ? ", angles" : ", centre");
-      const bool good = jet(row, half) <= kJetTolerance &&
-                        differences(row, half) <= kDifferenceTolerance;
-      std::printf("%-20s %-16s %12.1e %12.1e  %s\n", Residual::kName,
-                  block.c_str(), jet(row, half), differences(row, half),
-                  good ? "ok" : "WRONG");
-      passed = passed && good;
+      passed = PrintLine(Residual::kName,
+                         "row " + std::to_string(row) +
+                             (half == 0 ? ", angles" : ", centre"),
+                         jet(row, half), differences(row, half)) &&
+               passed;
     }
   }
   return passed;
 }
 
-template <typename... Residuals>
-bool ReportAll(TypeList<Residuals...>) {
+// Infinite if one is not finite.
+double Larger(double a, double b) {
+  return std::isfinite(a) && std::isfinite(b) ? std::max(a, b) : INFINITY;
+}
+
+// The errors of a factor by each of its blocks, over random measurements and
+// states.
+template <typename Factor>
+bool ReportFactor() {
+  if (!IsWanted(FLAGS_factor, FLAGS_cost, Factor::kName)) return true;
+  constexpr int kStatesEach = 10;  // of each measurement
+  FactorSampler random(FLAGS_seed);
+  std::vector<FactorErrors> worst;
+  for (int done = 0; done < FLAGS_samples; done += kStatesEach) {
+    CheckFactorOptions options;
+    options.samples = std::min(kStatesEach, FLAGS_samples - done);
+    // Other numbers than the measurements have: with the same ones, a gravity
+    // would be along an axis of its pose, with rows of zeros.
+    options.seed = FLAGS_seed + 1 + done;
+    const auto errors = ErrorsOfFactor(Factor::Sample(&random), options);
+    if (worst.empty()) worst = errors;
+    for (size_t i = 0; i < errors.size(); ++i) {
+      worst[i].autodiff = Larger(worst[i].autodiff, errors[i].autodiff);
+      worst[i].differences =
+          Larger(worst[i].differences, errors[i].differences);
+    }
+  }
   bool passed = true;
-  ((passed = Report<Residuals>() && passed), ...);
+  for (size_t i = 0; i < worst.size(); ++i) {
+    passed = PrintLine(Factor::kName,
+                       "block " + std::to_string(i) + ", " + worst[i].block,
+                       worst[i].autodiff, worst[i].differences) &&
+             passed;
+  }
+  return passed;
+}
+
+template <typename... Residuals, typename... Factors>
+bool ReportAll(TypeList<Residuals...>, TypeList<Factors...>) {
+  bool passed = true;
+  ((passed = ReportCost<Residuals>() && passed), ...);
+  ((passed = ReportFactor<Factors>() && passed), ...);
   return passed;
 }
 
@@ -122,9 +179,14 @@ int Main() {
     throw InputError("--cost: must be one cost, or empty for all");
   }
   if (!FLAGS_cost.empty()) MakeRobustCosts(FLAGS_cost, "none");
-  std::printf("%-20s %-16s %12s %12s\n", "cost", "block", "autodiff",
+  const std::vector<std::string> factors = NamesOfTypes(FactorTypes());
+  if (!FLAGS_factor.empty() && std::find(factors.begin(), factors.end(),
+                                         FLAGS_factor) == factors.end()) {
+    throw UnknownName("factor", FLAGS_factor, factors);
+  }
+  std::printf("%-20s %-24s %12s %12s\n", "cost or factor", "part", "autodiff",
               "differences");
-  const bool passed = ReportAll(ResidualTypes());
+  const bool passed = ReportAll(ResidualTypes(), FactorTypes());
   std::printf(
       "\nworst errors over %d samples, relative to the row's largest entry; "
       "tolerances %.0e, %.0e\n",
@@ -137,9 +199,9 @@ ProgramInfo Info() {
           "compares hand-written Jacobians with automatic differentiation and "
           "central differences; exit 3 if one is wrong.",
           "rgbd_jacobians --samples=1000",
-          {{"What to check", {"cost", "samples", "seed"}}},
+          {{"What to check", {"cost", "factor", "samples", "seed"}}},
           /*settings=*/{},
-          {{"cost", CostNames()}}};
+          {{"cost", CostNames()}, {"factor", NamesOfTypes(FactorTypes())}}};
 }
 
 }  // namespace

@@ -152,9 +152,14 @@ struct ResidualSample {
   explicit ResidualSample(RandomWorld* world) {
     // Enough matches without depth on one side, for residuals that use them.
     constexpr double kMissingDepthShare = 0.25;
-    origin = LinearizationPoint(world->Motion(1.0, 1.0));
-    x << world->Vector(0.7), world->Vector(0.7);
-    const Rigid3d motion = origin.CurFromPrev(x.data());
+    // Some motions turn the camera away from all that it has seen.
+    const Eigen::Vector3d middle(0.0, 0.0, 4.0);
+    Rigid3d motion;
+    do {
+      origin = LinearizationPoint(world->Motion(1.0, 1.0));
+      x << world->Vector(0.7), world->Vector(0.7);
+      motion = origin.CurFromPrev(x.data());
+    } while ((motion * middle).z() < 0.5);
     const MotionPrior prior = world->Prior(motion, 0.3);
     while (true) {
       const Correspondences matches =

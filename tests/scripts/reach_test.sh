@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# reach_test.sh SOURCE: scripts/mutants covers every cost and loss, and
+# reach_test.sh SOURCE: scripts/mutants covers every cost, factor and loss, and
 # docs/Doxyfile every header that the examples include.
 set -euo pipefail
 cd "$1"
@@ -15,7 +15,8 @@ missing() {
 
 mutants=$(scripts/mutants --list)
 direct=$(sed -n 's/^#include "\(costs\/direct\/.*\)"/\1/p' costs/cost_list.h)
-for file in costs/matches/*.h $direct robust/losses.h; do
+factors=$(sed -n 's/^#include "\(.*factors\/.*\)"/\1/p' costs/factors/factor_list.h)
+for file in costs/matches/*.h $direct $factors robust/losses.h; do
   grep -qF "$file:" <<<"$mutants" || missing "no mutant of $file"
 done
 
