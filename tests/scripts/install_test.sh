@@ -76,6 +76,7 @@ check "$examples/estimate_motion" '^ok, 160 of 200 matches .* 0\.000 mm$'
 check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
 says '^back at the start within 0\.[0-9]+ mm$' own_cost
 check "$examples/own_problem" '^solved, a quarter is 90\.00 degrees$'
+check "$examples/five_frames" '^solved, the last frame is 0\.[0-9]+ mm off, sigma 0\.'
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
 check "$examples/map_loop" '^[1-9][0-9]* keyframes, .* within 0\.[0-9]+ mm$'
@@ -85,7 +86,7 @@ check "$examples/find_places" '^28 shows what 0 shows, from 0\.0[0-9] m away$'
 
 # A component only needs its own dependencies.
 project costs CXX REQUIRED COMPONENTS costs
-for example in estimate_motion own_problem; do
+for example in estimate_motion own_problem five_frames; do
   cp "$source/docs/examples/$example.cc" "$work/costs"
   printf '%s\n' "add_executable($example $example.cc)" \
     "target_link_libraries($example PRIVATE rgbd_pose::costs)" \
@@ -97,6 +98,9 @@ configure "$work/costs" -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=TRUE \
 cmake --build "$work/costs/build" >"$work/log" 2>&1 || fail "costs: build"
 check "$work/costs/build/estimate_motion" '^ok'
 check "$work/costs/build/own_problem" '^solved'
+check "$work/costs/build/five_frames" '^solved'
+! ldd "$work/costs/build/five_frames" | grep -iE 'opencv|yaml' >"$work/log" ||
+  fail "costs: links what only the frontend needs"
 
 # Unknown components and versions are refused with a message.
 project lidar NONE REQUIRED COMPONENTS core lidar
