@@ -19,11 +19,9 @@ namespace rgbd_pose {
 // R_m is corrected to first order for what the bias differs from that of the
 // integration. The bias is one block: its walk is not part of this factor.
 struct GyroscopeFactor {
-  static constexpr char kName[] = "gyroscope";  // for messages
-  // Its blocks in their order: i, j, bias.
+  static constexpr char kName[] = "gyroscope";
   using Blocks = BlockList<PoseBlock, PoseBlock, VectorBlock<3>>;
-  static constexpr int kRows = 3;  // of the residual
-  // Derivatives by a pose.
+  static constexpr int kRows = 3;
   using ByPose = TangentJacobian<kRows, PoseBlock>;
 
   Eigen::Quaterniond i_from_j;       // R_m
@@ -40,7 +38,6 @@ struct GyroscopeFactor {
         sqrt_information(SqrtInformationOfCovariance(
             motion.covariance.topLeftCorner<3, 3>())) {}
 
-  // Writes r[3].
   template <typename T>
   bool Residual(const PoseOf<T>& i, const PoseOf<T>& j,
                 const Eigen::Matrix<T, 3, 1>& bias, T* r) const {
@@ -54,7 +51,6 @@ struct GyroscopeFactor {
     return true;
   }
 
-  // The same, and its derivatives in the tangents of the blocks.
   bool Jacobian(const PoseOf<double>& i, const PoseOf<double>& j,
                 const Eigen::Vector3d& bias, double* r, ByPose* by_i,
                 ByPose* by_j,
@@ -75,7 +71,6 @@ struct GyroscopeFactor {
     return true;
   }
 
-  // A random one, for checks.
   static GyroscopeFactor Sample(FactorSampler* random) {
     PreintegratedMotion motion;
     motion.start_from_end = random->Motion().rotation;

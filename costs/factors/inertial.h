@@ -26,11 +26,10 @@ using ImuBiasBlock = VectorBlock<6>;
 // integrated with. If it moves far (gyroscope: 0.01 rad/s over a second),
 // integrate again.
 struct InertialFactor {
-  static constexpr char kName[] = "inertial";  // for messages
-  // Its blocks in their order: at i, at j.
+  static constexpr char kName[] = "inertial";
   using Blocks = BlockList<PoseBlock, VelocityBlock, ImuBiasBlock, PoseBlock,
                            VelocityBlock, ImuBiasBlock>;
-  static constexpr int kRows = 15;  // of the residual
+  static constexpr int kRows = 15;
   // Velocities, biases and derivatives by a block.
   template <typename T>
   using Vector3 = Eigen::Matrix<T, 3, 1>;
@@ -50,7 +49,6 @@ struct InertialFactor {
         gravity(gravity_in_world),
         sqrt_information(preintegrated.SqrtInformation()) {}
 
-  // Writes r[15].
   template <typename T>
   bool Residual(const PoseOf<T>& i, const Vector3<T>& v_i,
                 const Vector6<T>& b_i, const PoseOf<T>& j,
@@ -75,7 +73,6 @@ struct InertialFactor {
     return true;
   }
 
-  // The same, and its derivatives in the tangents of the blocks.
   bool Jacobian(const PoseOf<double>& i, const Eigen::Vector3d& v_i,
                 const ImuBiasVector& b_i, const PoseOf<double>& j,
                 const Eigen::Vector3d& v_j, const ImuBiasVector& b_j, double* r,
