@@ -32,7 +32,8 @@ bool RepeatedImages::IsNew(Frame* frame) {
   }
   if (!has_depth) {
     ++counts_.depth;
-    frame->depth = cv::Mat::zeros(frame->depth.size(), frame->depth.type());
+    // A new image: an assigned expression would be written into the old one.
+    frame->depth = cv::Mat(frame->depth.size(), CV_16UC1, cv::Scalar(0));
   }
   return true;
 }
