@@ -160,11 +160,22 @@ TEST(PreintegrationTest, CovarianceHoldsInAThousandRuns) {
   }
 }
 
-TEST(PreintegrationTest, OneStepHasAnInformation) {
-  const auto motion = Preintegrate(ImuPath().Samples(0.0, 0.005, 200.0),
-                                   ImuBiasVector::Zero(), ImuNoise());
+// One step of white noise in continuous time: the integrals of its variance,
+// density^2, which leave v and p apart.
+TEST(PreintegrationTest, OneStepHasTheNoiseOfContinuousTime) {
+  constexpr double kTime = 0.005;
+  const ImuNoise noise;
+  const auto motion = Preintegrate(
+      {{0.0, {0, 0, 0}, {0, 0, 9.8}}, {kTime, {0, 0, 0}, {0, 0, 9.8}}},
+      ImuBiasVector::Zero(), noise);
+  const double accel = std::pow(noise.accel_density, 2.0);
+  const auto& P = motion.covariance;
+  EXPECT_NEAR(P(0, 0), std::pow(noise.gyro_density, 2.0) * kTime, 1e-18);
+  EXPECT_NEAR(P(3, 3), accel * kTime, 1e-18);
+  EXPECT_NEAR(P(3, 6), accel * std::pow(kTime, 2.0) / 2.0, 1e-20);
+  EXPECT_NEAR(P(6, 6), accel * std::pow(kTime, 3.0) / 3.0, 1e-22);
   const auto S = motion.SqrtInformation();
-  EXPECT_TRUE((S * motion.covariance * S.transpose()).isIdentity(1e-9));
+  EXPECT_TRUE((S * P * S.transpose()).isIdentity(1e-9));
 }
 
 TEST(PreintegrationTest, BadInputIsOneLine) {

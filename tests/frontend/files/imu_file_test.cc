@@ -1,0 +1,85 @@
+#include "frontend/files/imu_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+class ImuFileTest : public testing::Test {
+ protected:
+  ImuRecording Read(const std::string& text) {
+    return ReadImuFile(folder_.Write("imu.csv", text));
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(ImuFileTest, ReadsEurocsColumnsInNanoseconds) {
+  const ImuRecording imu = Read(
+      "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n"
+      "1403636579758555392,-0.1,0.2,0.03,8.1,-0.4,-5.5\n"
+      "1403636579763555584,-0.2,0.3,0.04,8.2,-0.3,-5.4\n");
+  ASSERT_EQ(imu.samples.size(), 2u);
+  EXPECT_TRUE(imu.has_gyro);
+  EXPECT_EQ(imu.warning, "");
+  EXPECT_NEAR(imu.samples[0].stamp, 1403636579.758555392, 5e-7);
+  EXPECT_EQ(imu.samples[1].gyro, Eigen::Vector3d(-0.2, 0.3, 0.04));
+  EXPECT_EQ(imu.samples[1].accel, Eigen::Vector3d(8.2, -0.3, -5.4));
+}
+
+TEST_F(ImuFileTest, ReadsSecondsAndAnAccelerometerAlone) {
+  const ImuRecording imu = Read(
+      "# timestamp ax ay az\n"
+      "1305031098.382263 -0.478957 8.010560 -4.166928\n"
+      "1305031098.385267 -0.574749 8.202143 -4.166928\n");
+  ASSERT_EQ(imu.samples.size(), 2u);
+  EXPECT_FALSE(imu.has_gyro);
+  EXPECT_EQ(imu.samples[0].stamp, 1305031098.382263);
+  EXPECT_EQ(imu.samples[1].accel,
+            Eigen::Vector3d(-0.574749, 8.202143, -4.166928));
+  EXPECT_TRUE(imu.samples[1].gyro.isZero(0.0));
+}
+
+TEST_F(ImuFileTest, NamesTheLineOfWhatIsWrong) {
+  ExpectInputError([&] { Read("# nothing\n"); }, {"imu.csv: no samples"});
+  ExpectInputError([&] { Read("1.0 0 0 9.8\n1.1 0 0\n"); },
+                   {"imu.csv:2: 3 columns", "7, or", "4"});
+  ExpectInputError([&] { Read("1.0 0 0 9.8 1 2\n"); },
+                   {"imu.csv:1: 6 columns"});
+  ExpectInputError([&] { Read("1.0 0 0 9.8\n1.1 0 0 nan\n"); },
+                   {"imu.csv:2:", "an acceleration"});
+  ExpectInputError([&] { Read("1.0 0 0 9.8\n\n1.0 0 0 9.8\n"); },
+                   {"imu.csv:3: the stamp is not later"});
+  ExpectInputError([&] { Read("1305031098382 0 0 9.8\n"); },
+                   {"imu.csv:1:", "is not in seconds"});
+}
+
+TEST_F(ImuFileTest, RefusesWrongUnits) {
+  ExpectInputError([&] { Read("1.0 0 0 1.0\n1.1 0 0 1.0\n"); },
+                   {"imu.csv: accelerations are 1 ", "gravity is in g"});
+  EXPECT_THAT(Read("1.0 0 0 4.0\n1.1 0 0 4.0\n").warning,
+              testing::HasSubstr("gravity is 9.81"));
+}
+
+TEST(RealImuFileTest, TumsAccelerometersAreUnderstood) {
+  const char* const data = std::getenv("RGBD_POSE_TEST_DATA");
+  if (data == nullptr) {
+    GTEST_SKIP() << "RGBD_POSE_TEST_DATA does not name a folder of real "
+                    "sequences";
+  }
+  const ImuRecording imu =
+      ReadImuFile(std::string(data) + "/tum_fr1_xyz/accelerometer.txt");
+  EXPECT_EQ(imu.samples.size(), 15158u);
+  EXPECT_EQ(imu.warning, "");
+}
+
+}  // namespace
+}  // namespace rgbd_pose
