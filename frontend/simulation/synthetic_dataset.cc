@@ -17,6 +17,8 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
+constexpr double kFirstStamp = 1000.0;  // s
+
 using Path = std::function<Rigid3d(double t)>;  // world_from_cam
 
 constexpr double kMaxPatchShare = 0.45;  // a larger one would leave the image
@@ -200,8 +202,24 @@ SyntheticDataset::SyntheticDataset(const SyntheticOptions& options)
   }
 }
 
+std::vector<ImuSample> SyntheticDataset::SimulateImu(
+    const SyntheticImuOptions& options) const {
+  // The path is defined up to an interval outside of its frames.
+  const double interval = 1.0 / options_.rate_hz;
+  if (std::abs(options.delay_s) > 0.4 * interval) {
+    throw InputError(Format(
+        "delay_s of the inertial sensor is %g s, at most 0.4 of the frame "
+        "interval of %g s are possible",
+        options.delay_s, interval));
+  }
+  std::vector<ImuSample> samples =
+      rgbd_pose::SimulateImu(world_from_cam_, -0.5 * interval,
+                             Time(size() - 1) + 0.5 * interval, options);
+  for (ImuSample& sample : samples) sample.stamp += kFirstStamp;
+  return samples;
+}
+
 double SyntheticDataset::timestamp(int index) const {
-  constexpr double kFirstStamp = 1000.0;  // s
   return std::round((kFirstStamp + Time(index)) * 1e6) / 1e6;
 }
 

@@ -4,10 +4,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "frontend/frame/depth_registration.h"
+#include "frontend/simulation/synthetic_imu.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/sources/frame_source.h"
@@ -81,6 +83,11 @@ class SyntheticDataset : public Dataset {
 
   // The pose at the time stamp.
   Rigid3d WorldFromCam(int index) const;
+
+  // The samples of an inertial sensor along the same path, from half a frame
+  // interval before the first stamp to half of one after the last. Throws
+  // InputError for invalid options and for a delay above 0.4 intervals.
+  std::vector<ImuSample> SimulateImu(const SyntheticImuOptions& options) const;
 
   // The exact pose of every frame.
   Trajectory ground_truth() const override;
