@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/factors/inertial.h"
 #include "core/inertial/imu_buffer.h"
+#include "costs/factors/inertial.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "tests/support/expect_input_error.h"
