@@ -18,6 +18,9 @@
 namespace rgbd_pose {
 namespace {
 
+// Scatter of stamps below this moves no surface noticeably.
+constexpr double kNoticedJitterMs = 0.2;
+
 constexpr char kDebug[] = "debug";
 
 nlohmann::json ShutterToJson(const RgbdCamera& camera) {
@@ -110,6 +113,13 @@ void RunOutput::WarnOfMissingImages(size_t frames) const {
 
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   depth_stamps_ms_.push_back(1e3 * frame.depth_delay);
+  const auto& frames = run.frames();
+  stamp_jitter_.Add(
+      frame.depth_delay,
+      frames.size() < 2
+          ? 0.0
+          : frame.timestamp - frames[frames.size() - 2].timestamp);
+  jitters_ms_.push_back(1e3 * stamp_jitter_.sigma());
   const TrackedFrame& tracked = run.frames().back();
   if (!drawn_.Contains(tracked.index)) return;
   const Camera& camera = source_.camera().camera;
@@ -132,7 +142,8 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   if (!depth_stamps_ms_.empty()) {
     depth_stamp_ms = {{"least", Quantile(depth_stamps_ms_, 0.0)},
                       {"median", Median(depth_stamps_ms_)},
-                      {"most", Quantile(depth_stamps_ms_, 1.0)}};
+                      {"most", Quantile(depth_stamps_ms_, 1.0)},
+                      {"jitter", Median(jitters_ms_)}};
   }
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);  // ru_maxrss is in KiB
@@ -160,6 +171,13 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                               {"weights_zero", residuals.weights_zero},
                               {"degrees_counts", residuals.degrees}}}};
   metrics.update(more);
+  const double jitter_ms = jitters_ms_.empty() ? 0.0 : Median(jitters_ms_);
+  if (jitter_ms > kNoticedJitterMs) {
+    Warn(
+        {Format("the stamps of depth images scatter by %.1f ms against those "
+                "of colour; covariances allow for it",
+                jitter_ms)});
+  }
   if (!results.no_evaluation.empty()) {
     Warn({"no evaluation: " + results.no_evaluation});
   }

@@ -7,6 +7,7 @@
 #include "apps/results/run_folder.h"
 #include "apps/shell/program.h"
 #include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/stamp_jitter.h"
 #include "frontend/settings/settings.h"
 #include "frontend/slam/sequence_run.h"
 #include "frontend/sources/frame_range.h"
@@ -58,6 +59,8 @@ class RunOutput {
   FrameSelection drawn_;
   RunFolder folder_;
   std::vector<double> depth_stamps_ms_;  // relative to colour, per frame
+  StampJitter stamp_jitter_;             // of these
+  std::vector<double> jitters_ms_;       // its standard deviation, per frame
 };
 
 }  // namespace rgbd_pose

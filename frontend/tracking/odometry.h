@@ -7,6 +7,7 @@
 #include "core/estimation/estimator.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
+#include "frontend/frame/stamp_jitter.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/shutter_tracking.h"
@@ -208,6 +209,7 @@ class Odometry {
   Rigid3d cur_from_prev_;                           // between the last two
   double timestamp_ = 0.0;                          // of the last frame, s
   double interval_ = 0.0;                           // since the frame before, s
+  StampJitter stamp_jitter_;                        // of depth
   // The last frame, to become a keyframe, if it was tracked and is none.
   std::optional<Keyframe> last_;
   MotionMatrix last_covariance_ = MotionMatrix::Zero();  // since its reference
