@@ -95,7 +95,31 @@ class ScaledLoss final : public BatchLoss {
   ScaledLoss(const ceres::LossFunction* base, double scale, double factor = 1.0)
       : base_(base), scale2_(scale * scale), factor_(factor) {}
 
+  // Whether the base grows without bound in slope towards 0, like |x|.
+  bool IsSteepAtZero() const {
+    if (base_ == nullptr) return false;
+    constexpr double kAlmostZero = 1e-8;
+    double at_zero[3], beside[3];
+    base_->Evaluate(kAlmostZero, at_zero);
+    base_->Evaluate(kFlat, beside);
+    return at_zero[1] > 2.0 * beside[1];
+  }
+
+  // From now on the slope below half a sigma is that at half a sigma. For a
+  // loss that is steep at 0, this is the slope of the mean score over the
+  // residuals near 0, as a covariance needs it, instead of that of the few
+  // residuals that happen to be almost 0: the fitted ones.
+  void FlattenAtZero() { is_flat_ = true; }
+
   void Evaluate(double s, double rho[3]) const override {
+    if (is_flat_ && s < kFlat * scale2_) {
+      double beside[3];
+      base_->Evaluate(kFlat, beside);
+      rho[1] = factor_ * beside[1];
+      rho[0] = rho[1] * s;
+      rho[2] = 0.0;
+      return;
+    }
     if (base_ == nullptr) {
       rho[0] = factor_ * s;
       rho[1] = factor_;
@@ -109,6 +133,15 @@ class ScaledLoss final : public BatchLoss {
   }
 
   double Weigh(const double* s, int n, double* weights) const override {
+    if (is_flat_) {
+      double sum = 0.0, rho[3];
+      for (int i = 0; i < n; ++i) {
+        Evaluate(s[i], rho);
+        sum += rho[0];
+        weights[i] = rho[1];
+      }
+      return sum;
+    }
     const double inverse = 1.0 / scale2_;
     for (int i = 0; i < n; ++i) weights[i] = s[i] * inverse;
     const double sum = rgbd_pose::Weigh(base_, weights, n, weights);
@@ -122,6 +155,8 @@ class ScaledLoss final : public BatchLoss {
   const ceres::LossFunction* base_;
   double scale2_;
   double factor_;
+  bool is_flat_ = false;
+  static constexpr double kFlat = 0.25;  // of the squared norm, sigmas^2
 };
 
 }  // namespace rgbd_pose

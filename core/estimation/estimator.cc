@@ -131,10 +131,13 @@ class Estimator::Impl {
   void Judge(const Rigid3d& guess) {
     const MotionDerivatives motion = DerivativesAt(out_->cur_from_prev);
     out_->sigma = terms_.UpdateNorms(motion) * terms_.scale();
-    shares_.JudgeMatches(terms_, out_);
-    const NormalEquations sum = shares_.Linearise(terms_, motion);
     out_->initial_cost = terms_.Linearise(DerivativesAt(guess)).cost;
-    out_->final_cost = sum.cost;
+    const NormalEquations as_solved = shares_.Linearise(terms_, motion);
+    out_->final_cost = as_solved.cost;
+    const bool is_flattened = terms_.FlattenLosses();
+    shares_.JudgeMatches(terms_, out_);
+    const NormalEquations sum =
+        is_flattened ? shares_.Linearise(terms_, motion) : as_solved;
     const double spurious = SpuriousInformation(*matches_, out_->weights);
     Degeneracy degeneracy =
         FindDegeneracy(sum.hessian, spurious, options_.max_standard_deviation);

@@ -88,6 +88,16 @@ void RobustProblem::SetLosses(double width) {
   }
 }
 
+bool RobustProblem::FlattenLosses() {
+  bool has_steep = false;
+  for (RobustTerm& term : terms_) {
+    if (!term.scaled.IsSteepAtZero()) continue;
+    term.scaled.FlattenAtZero();
+    has_steep = true;
+  }
+  return has_steep;
+}
+
 void RobustProblem::AddTo(Assembly assembly, const LinearizationPoint& origin,
                           double* x, ceres::Problem* problem) {
   for (RobustTerm& term : terms_) {

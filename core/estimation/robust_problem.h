@@ -63,6 +63,10 @@ class RobustProblem {
   // Sets all losses to `width` times their widths at the current scales.
   void SetLosses(double width);
 
+  // ScaledLoss::FlattenAtZero for losses that are steep there, until the next
+  // SetLosses. Returns false if there are none.
+  bool FlattenLosses();
+
   void AddTo(Assembly assembly, const LinearizationPoint& origin, double* x,
              ceres::Problem* problem);
 

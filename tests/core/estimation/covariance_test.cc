@@ -131,6 +131,34 @@ TEST(CovarianceOfAPriorTest, IsHonestWhereTheScaleIsEstimated) {
   }
 }
 
+// Least absolute values fit some matches exactly. Their weight, which is
+// nearly infinite, must not count as information.
+TEST(CovarianceOfSteepLossesTest, FittedResidualsAreNotCertain) {
+  struct Setting {
+    const char* cost;
+    int matches;
+  };
+  for (const Setting& setting : {Setting{"point_to_plane", 300},
+                                 {"bidirectional_point", 30},
+                                 {"reprojection", 100}}) {
+    Estimator estimator({}, MakeRobustCosts(setting.cost, "l1"));
+    double nees = 0.0;
+    int ok = 0;
+    for (int seed = 0; seed < 150; ++seed) {
+      RandomWorld world(seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      const MotionEstimate estimate =
+          estimator.Estimate(world.Matches(setting.matches, 0.0, truth));
+      if (!estimate.ok()) continue;
+      const MotionVector error = ErrorVector(estimate.cur_from_prev, truth);
+      nees += error.dot(estimate.covariance.ldlt().solve(error)) / 6.0;
+      ++ok;
+    }
+    EXPECT_GT(ok, 30) << setting.cost;
+    EXPECT_LT(nees / ok, 1.8) << setting.cost;  // 3 to 12 otherwise
+  }
+}
+
 // A prior with a wrong mean and no loss moves the estimate by many sigmas of
 // the matches, or is moved by many of its own. (A prior that is more exact than
 // the matches by far, so that they do not contradict it, cannot be noticed.)
