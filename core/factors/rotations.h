@@ -39,7 +39,7 @@ Eigen::Quaternion<T> RotationBy(const Eigen::Matrix<T, 3, 1>& omega) {
   // root is not.
   if (squared < T(1e-6)) {
     w = T(1.0) - squared / T(8.0) + squared * squared / T(384.0);
-    scale = T(0.5) - squared / T(48.0) + squared * squared / T(3840.0);
+    scale = T(0.5) - squared / T(48.0);
   } else {
     const T angle = sqrt(squared);
     w = cos(T(0.5) * angle);
@@ -58,7 +58,7 @@ inline Eigen::Matrix3d RotationByJacobian(const Eigen::Vector3d& omega) {
   double first = 0.0, second = 0.0;
   if (squared < 1e-4) {
     first = 0.5 - squared / 24.0 + squared * squared / 720.0;
-    second = 1.0 / 6.0 - squared / 120.0 + squared * squared / 5040.0;
+    second = 1.0 / 6.0 - squared / 120.0;
   } else {
     const double angle = std::sqrt(squared);
     const double half = std::sin(0.5 * angle);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/factors/sampler.h"
 
@@ -38,8 +39,25 @@ TEST(RotationsTest, RotationByJacobianIsToTheRight) {
           (2.0 * kStep);
       EXPECT_TRUE(J.col(k).isApprox(change, 1e-7)) << angle;
     }
-    // Where the series ends, no digits are lost: J omega = omega.
     EXPECT_TRUE((J * omega).isApprox(omega, 1e-14)) << angle;
+  }
+}
+
+// No digits are lost on either side of where the series ends. The Jacobian is
+// the mean of Exp(-s omega) for s from 0 to 1; three points of Gauss are exact
+// to omega^6 / 2e6.
+TEST(RotationsTest, RotationByJacobianIsAMeanOfRotations) {
+  FactorSampler random(4);
+  for (const double angle : {0.0, 1e-4, 0.9e-2, 0.999e-2, 1.001e-2, 0.03}) {
+    const Eigen::Vector3d omega = angle * random.Vector<3>(1.0).normalized();
+    Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+    for (const auto& [at, weight] :
+         {std::pair(-std::sqrt(0.6), 5.0), std::pair(0.0, 8.0),
+          std::pair(std::sqrt(0.6), 5.0)}) {
+      const Eigen::Vector3d turn = -0.5 * (1.0 + at) * omega;
+      mean += weight / 18.0 * RotationBy(turn).toRotationMatrix();
+    }
+    EXPECT_LT((RotationByJacobian(omega) - mean).norm(), 1e-14) << angle;
   }
 }
 
