@@ -53,6 +53,31 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   return root * root.transpose();
 }
 
+// Least squares of inliers; nothing of the others.
+class InliersOnly final : public ceres::LossFunction {
+ public:
+  explicit InliersOnly(double limit) : limit_(limit) {}
+  void Evaluate(double s, double rho[3]) const override {
+    rho[0] = std::min(s, limit_);
+    rho[1] = s <= limit_ ? 1.0 : 0.0;
+    rho[2] = 0.0;
+  }
+
+ private:
+  double limit_;  // of the squared norm
+};
+
+// Whether far outliers pull as much as residuals of 3 sigmas, as under Huber's
+// loss.
+bool PullsAtAnyDistance(const ScaledLoss& loss, double scale) {
+  const auto pull = [&](double sigmas) {
+    double rho[3];
+    loss.Evaluate(sigmas * sigmas * scale * scale, rho);
+    return sigmas * rho[1];
+  };
+  return pull(100.0) > 0.5 * pull(3.0);
+}
+
 }  // namespace
 
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
@@ -207,6 +232,35 @@ MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& problem,
     shares_[i].scatter /= term.cost->information_factor();
   }
   return RobustCovariance(shares_, inverse);
+}
+
+// With the sums H and g of the inliers alone, these would move the motion by
+// -H^-1 g.
+double CovarianceAccumulator::PullOfOutliers(
+    const RobustProblem& problem, const MotionDerivatives& motion,
+    const MotionMatrix& covariance) const {
+  const auto limit = [](const RobustTerm& term) {
+    const int p = term.cost->degrees_of_freedom();
+    return term.scale * term.scale * ChiSquared99(p);
+  };
+  // Pixels at edges and of hidden surfaces disagree in every pair. Costs that
+  // are not whitened have another limit for each match.
+  const auto pulls = [&](const RobustTerm& term) {
+    const std::vector<int>& matches = term.cost->matches();
+    return term.has_scale() && term.cost->is_whitened() && !matches.empty() &&
+           matches.front() >= 0 && PullsAtAnyDistance(term.scaled, term.scale);
+  };
+  const auto& terms = problem.terms();
+  if (std::none_of(terms.begin(), terms.end(), pulls)) return 0.0;
+  NormalEquations inliers;
+  for (const RobustTerm& term : terms) {
+    const InliersOnly only(limit(term));
+    const bool is_cut = term.has_scale() && term.cost->is_whitened();
+    term.cost->Linearise(motion, is_cut ? &only : term.scaled_or_null(),
+                         &inliers);
+  }
+  const MotionVector away = inliers.hessian.ldlt().solve(inliers.gradient);
+  return away.dot(covariance.ldlt().solve(away));
 }
 
 // The estimate is a mean of both, nearer to the more certain one. With the

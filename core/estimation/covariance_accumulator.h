@@ -79,6 +79,13 @@ class CovarianceAccumulator {
                           const MotionDerivatives& motion,
                           const MotionMatrix& inverse);
 
+  // Chi^2 of six degrees of freedom of how far residuals beyond the limits of
+  // inliers pull the motion away from where the others alone would have it. 0
+  // for losses under which large residuals hardly pull, and for pixels.
+  double PullOfOutliers(const RobustProblem& problem,
+                        const MotionDerivatives& motion,
+                        const MotionMatrix& covariance) const;
+
   // Chi^2 of six degrees of freedom of the difference between what priors say
   // and what everything else says. `covariance` is that of the estimate.
   double PriorChiSquared(const MotionMatrix& covariance) const;

@@ -17,6 +17,8 @@ constexpr double kHardlyWrong = 0.95;
 
 // Chi^2 of six degrees of freedom that is as rare as five sigmas.
 constexpr double kFiveSigmas = 40.9;
+// The same, exceeded by chance once in two hundred.
+constexpr double kOneInTwoHundred = 18.5;
 
 std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
                                 std::unique_ptr<ceres::LossFunction> loss) {
@@ -169,6 +171,12 @@ class Estimator::Impl {
                      std::to_string(used) +
                      " matches agree with one motion, as many as wrong ones "
                      "may by chance";
+    } else if (shares_.PullOfOutliers(terms_, motion, out_->covariance) >
+               kOneInTwoHundred) {
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason =
+          "matches that disagree pull the motion away from the others; a loss "
+          "such as tukey leaves them out";
     } else if (shares_.PriorChiSquared(out_->covariance) > kFiveSigmas) {
       out_->status = EstimateStatus::kInconsistent;
       out_->reason = "inconsistent with the prior";

@@ -159,6 +159,33 @@ TEST(CovarianceOfSteepLossesTest, FittedResidualsAreNotCertain) {
   }
 }
 
+// Under Huber's loss many gross outliers pull the motion away from all others
+// by more than its covariance says; with few of them, or symmetric ones, not.
+TEST(OutliersThatPullTest, AreNotOk) {
+  struct Setting {
+    const char* cost;
+    const char* loss;
+    double outliers;
+    bool are_ok;
+  };
+  for (const Setting& setting :
+       {Setting{"reprojection_depth", "huber", 0.4, false},
+        {"reprojection_depth", "huber", 0.1, true},
+        {"reprojection_depth", "tukey", 0.4, true},
+        {"bidirectional_point", "huber", 0.4, true}}) {
+    Estimator estimator({}, MakeRobustCosts(setting.cost, setting.loss));
+    for (int seed = 0; seed < 20; ++seed) {
+      RandomWorld world(seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      const MotionEstimate estimate =
+          estimator.Estimate(world.Matches(300, setting.outliers, truth));
+      EXPECT_EQ(estimate.ok(), setting.are_ok)
+          << setting.cost << ", " << setting.loss << ", outliers "
+          << setting.outliers << ", seed " << seed << ": " << estimate.reason;
+    }
+  }
+}
+
 // A prior with a wrong mean and no loss moves the estimate by many sigmas of
 // the matches, or is moved by many of its own. (A prior that is more exact than
 // the matches by far, so that they do not contradict it, cannot be noticed.)
