@@ -33,8 +33,10 @@ MotionVector MeanUnits(const MotionMatrix& hessian) {
   return units;
 }
 
-// The dominant directions, the strongest first.
-std::string Describe(const MotionVector& direction, double deviation) {
+// The dominant directions, the strongest first, and why they are not known: a
+// standard deviation, or less information than noise alone seems to give.
+std::string Describe(const MotionVector& direction, double deviation,
+                     bool may_be_noise) {
   std::array<int, 6> order = {0, 1, 2, 3, 4, 5};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return std::abs(direction[a]) > std::abs(direction[b]);
@@ -45,8 +47,16 @@ std::string Describe(const MotionVector& direction, double deviation) {
       text += std::string(" with ") + kDirections[order[i]];
     }
   }
-  return text + Format(" is not determined (standard deviation %.2g %s)",
-                       deviation, order[0] < 3 ? "rad" : "m");
+  text += " is not determined";
+  if (std::isinf(deviation)) return text + " at all";
+  const char* const unit = order[0] < 3 ? "rad" : "m";
+  if (may_be_noise) {
+    return text + Format(
+                      ": noise alone may give the %.2g %s to which it seems "
+                      "known, as where points are on a line or far away",
+                      deviation, unit);
+  }
+  return text + Format(" (standard deviation %.2g %s)", deviation, unit);
 }
 
 // The largest standard deviation within three rows, and the change of all six.
@@ -109,6 +119,12 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     result.reason = "the Hessian is not finite";
     return result;
   }
+  if (hessian.isZero()) {
+    result.reason =
+        "no match has any weight: is the guess far off, are sigmas too small, "
+        "or are all points nearer than 0.1 m?";
+    return result;
+  }
   const MotionVector means = MeanUnits(hessian);
   // Scaled by what each parameter would be known to if it were the only one.
   MotionVector unit = hessian.diagonal();
@@ -117,7 +133,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   if (!(eigen.eigenvalues()[0] > kSingular)) {
     result.reason = Describe(
         unit.cwiseProduct(eigen.eigenvectors().col(0)).cwiseQuotient(means),
-        INFINITY);
+        INFINITY, /*may_be_noise=*/false);
     return result;
   }
   const MotionMatrix covariance =
@@ -132,7 +148,8 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   if (is_rotation || translation.deviation > max_standard_deviation) {
     const WeakDirection& weak = is_rotation ? rotation : translation;
     result.reason =
-        Describe(weak.direction.cwiseQuotient(means), weak.deviation);
+        Describe(weak.direction.cwiseQuotient(means), weak.deviation,
+                 weak.deviation <= max_standard_deviation);
     return result;
   }
   result.inverse = covariance;
@@ -152,7 +169,9 @@ void JudgeWeakestRotation(const Correspondences& matches,
   if (known >= std::max(least, kSpuriousMargin * spurious_information)) return;
   MotionVector rotation = result->weakest_rotation;
   rotation.tail<3>().setZero();  // in another unit
-  result->reason = Describe(rotation, 1.0 / std::sqrt(known));
+  const double deviation = 1.0 / std::sqrt(known);
+  result->reason =
+      Describe(rotation, deviation, deviation <= max_standard_deviation);
 }
 
 double SpuriousInformation(const Correspondences& matches,

@@ -69,6 +69,12 @@ class Estimator::Impl {
 
   void Run(const FramePair& pair, const Rigid3d& guess,
            MotionEstimate* estimate) {
+    if (!guess.IsFinite()) {
+      Reset(pair, Rigid3d(), estimate);
+      out_->status = EstimateStatus::kNotConverged;
+      out_->reason = "the guess is not finite";
+      return;
+    }
     Reset(pair, guess, estimate);
     if (terms_.num_used() < kMinMatches) {
       out_->status = EstimateStatus::kTooFewMatches;

@@ -163,6 +163,19 @@ TEST(EstimatorTest, CountsWhatWasRejectedAsNotFinite) {
 }
 
 // Holds for both ways to build residual blocks.
+TEST(EstimatorTest, AGuessThatIsNotFiniteIsSaidToBe) {
+  RandomWorld world(1);
+  const Rigid3d truth = world.Motion(0.1, 0.1);
+  Rigid3d guess;
+  guess.translation.y() = std::nan("");
+  const MotionEstimate estimate =
+      Estimator({}, MakeRobustCosts())
+          .Estimate(world.Matches(100, 0.0, truth), guess);
+  EXPECT_EQ(estimate.status, EstimateStatus::kNotConverged);
+  EXPECT_EQ(estimate.reason, "the guess is not finite");
+  EXPECT_TRUE(estimate.cur_from_prev.IsFinite());
+}
+
 TEST(EstimatorTest, FiniteNumbersThatNoCameraMeasuresAreRejected) {
   RandomWorld world(15);
   const Rigid3d truth = world.Motion(0.05, 0.05);
