@@ -1,10 +1,12 @@
 #include "frontend/sources/frame_assembly.h"
 
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/depth_warper.h"
 
@@ -34,6 +36,19 @@ cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
     raw = is_depth ? static_cast<uint16_t>(std::lround(value)) : 0;
   }
   return moved;
+}
+
+// The mask of a colour image: mask/NAME.png in its folder or beside that.
+// Empty: there is none.
+std::string MaskPath(const std::string& color_path) {
+  const std::filesystem::path color(color_path);
+  const std::filesystem::path name = color.stem().string() + ".png";
+  const std::filesystem::path folder = color.parent_path();
+  for (const auto& mask :
+       {folder / "mask" / name, folder / ".." / "mask" / name}) {
+    if (IsFile(mask)) return mask.lexically_normal().string();
+  }
+  return "";
 }
 
 }  // namespace
@@ -90,8 +105,15 @@ Frame FrameAssembly::Read(Frame frame, const std::string& color_path,
   cv::Mat color;
   const cv::Mat gray =
       ReadGrayImageFile(color_path, keep_color_ ? &color : nullptr);
-  return Make(std::move(frame), {gray, color_path}, color,
-              {ReadDepthImageFile(depth_path), depth_path});
+  Frame made = Make(std::move(frame), {gray, color_path}, color,
+                    {ReadDepthImageFile(depth_path), depth_path});
+  const std::string mask_path = MaskPath(color_path);
+  if (mask_path.empty()) return made;
+  const Named mask = {ReadGrayImageFile(mask_path, nullptr), mask_path};
+  CheckSize(mask, SizeOf(camera_.camera), "camera");
+  made.depth = made.depth.clone();  // it may be shared
+  made.depth.setTo(0, Upright(mask.image) == 0);
+  return made;
 }
 
 }  // namespace rgbd_pose

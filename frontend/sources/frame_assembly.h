@@ -43,7 +43,8 @@ class FrameAssembly {
   // Whether images are turned upside down, see CameraSetup.
   bool is_upside_down() const { return is_upside_down_; }
 
-  // The same from two files.
+  // The same from two files, and the mask of the colour image if there is one
+  // (docs/sources.md): where it is 0, the frame has no depth.
   Frame Read(Frame frame, const std::string& color_path,
              const std::string& depth_path) const;
 

@@ -3,8 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 #include "core/geometry/camera.h"
+#include "frontend/files/image_file.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {
 namespace {
@@ -59,6 +64,52 @@ TEST(CorrectDepthTest, PlainDepthIsLeftAlone) {
   const Frame wall = Wall(2.0);
   EXPECT_EQ(CorrectDepth(RgbdCamera(), wall).depth.data, wall.depth.data);
 }
+
+// mask/NAME.png, in the folder of the images or beside it.
+class MaskTest : public testing::TestWithParam<const char*> {
+ protected:
+  MaskTest() {
+    WritePngFile(color_, cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)));
+    WritePngFile(depth_, Wall(2.0).depth);
+  }
+
+  Frame Read() {
+    CameraSetup setup;
+    return FrameAssembly(setup, /*keep_color=*/false)
+        .Read(Frame(), color_, depth_);
+  }
+  void WriteMask(const cv::Mat& mask) {
+    const std::string path = folder_ / GetParam();
+    std::filesystem::create_directories(
+        std::filesystem::path(path).parent_path());
+    WritePngFile(path, mask);
+  }
+
+  const TempFolder folder_;
+  const std::string color_ = folder_.Write("seq/rgb/1.5.png", "");
+  const std::string depth_ = folder_.Write("seq/depth/1.6.png", "");
+};
+
+TEST_P(MaskTest, NothingIsMeasuredWhereTheMaskIsZero) {
+  EXPECT_NEAR(Read().DepthAt(100, 100), 2.0, 1e-3);
+  cv::Mat mask(480, 640, CV_8UC1, cv::Scalar(1));
+  mask(cv::Rect(100, 100, 50, 40)) = 0;
+  WriteMask(mask);
+  const Frame frame = Read();
+  EXPECT_EQ(frame.DepthAt(100, 100), 0.0);
+  EXPECT_EQ(frame.DepthAt(149, 139), 0.0);
+  EXPECT_NEAR(frame.DepthAt(150, 100), 2.0, 1e-3);
+  EXPECT_NEAR(frame.DepthAt(100, 140), 2.0, 1e-3);
+}
+
+TEST_P(MaskTest, IsAsLargeAsTheImage) {
+  WriteMask(cv::Mat(240, 320, CV_8UC1, cv::Scalar(1)));
+  ExpectInputError([this] { Read(); }, {"mask/1.5.png: is 320 x 240"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Places, MaskTest,
+                         testing::Values("seq/mask/1.5.png",
+                                         "seq/rgb/mask/1.5.png"));
 
 }  // namespace
 }  // namespace rgbd_pose
