@@ -1,6 +1,7 @@
 #include "frontend/bags/chunk_codec.h"
 
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -42,6 +43,53 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
          size == unpacked->size();
 }
 
+// Decompresses zstd frames piece by piece. `read` fills a buffer and returns
+// how much of it, 0 at the end; `write` takes a piece. Returns false if the
+// frames are damaged or cut off.
+bool UnpackZstd(
+    const std::function<size_t(char* to, size_t size)>& read,
+    const std::function<void(const char* piece, size_t size)>& write) {
+  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(
+      ZSTD_createDStream(), ZSTD_freeDStream);
+  std::vector<char> from(ZSTD_DStreamInSize());
+  std::vector<char> to(ZSTD_DStreamOutSize());
+  size_t left = 1;  // 0 at the end of a frame, or an error
+  while (!ZSTD_isError(left)) {
+    ZSTD_inBuffer in = {from.data(), read(from.data(), from.size()), 0};
+    if (in.size == 0) break;
+    // A full buffer may have left a part of the frame inside.
+    bool is_full = false;
+    while (!ZSTD_isError(left) &&
+           (in.pos < in.size || (is_full && left != 0))) {
+      ZSTD_outBuffer out = {to.data(), to.size(), 0};
+      left = ZSTD_decompressStream(stream.get(), &out, &in);
+      write(to.data(), out.pos);
+      is_full = out.pos == out.size;
+    }
+  }
+  return left == 0;
+}
+
+// The same for a message in memory.
+std::string UnpackZstdMessage(std::string_view packed) {
+  std::string unpacked;
+  const auto read = [&](char* to, size_t size) {
+    const size_t count = packed.copy(to, size);
+    packed.remove_prefix(count);
+    return count;
+  };
+  const auto write = [&](const char* piece, size_t size) {
+    if (unpacked.size() + size > kMaxSize) {
+      throw Damaged("a message cannot be decompressed");
+    }
+    unpacked.append(piece, size);
+  };
+  if (!UnpackZstd(read, write)) {
+    throw Damaged("a message cannot be decompressed");
+  }
+  return unpacked;
+}
+
 #endif
 
 }  // namespace
@@ -78,12 +126,11 @@ std::string Unpack(std::string_view packed, std::string_view codec,
 std::string UnpackMessage(std::string bytes) {
   if (bytes.rfind("\x28\xB5\x2F\xFD", 0) != 0) return bytes;
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
-  // The codes for an unknown size and for errors are larger than any chunk.
-  const uint64_t size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  // The size of a frame need not be in its header.
+  return UnpackZstdMessage(bytes);
 #else
-  const uint64_t size = 0;
+  return Unpack(bytes, "zstd", 0);  // throws
 #endif
-  return Unpack(bytes, "zstd", size);
 }
 
 void UnpackZstdFile(const std::string& packed,
@@ -91,21 +138,14 @@ void UnpackZstdFile(const std::string& packed,
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
   std::ifstream from(packed, std::ios::binary);
   std::ofstream to(unpacked, std::ios::binary);
-  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(
-      ZSTD_createDStream(), ZSTD_freeDStream);
-  std::vector<char> read(ZSTD_DStreamInSize());
-  std::vector<char> written(ZSTD_DStreamOutSize());
-  const auto num_read = static_cast<std::streamsize>(read.size());
-  size_t left = 1;  // 0 at the end of a frame, or an error
-  while (!ZSTD_isError(left) && from.read(read.data(), num_read).gcount() > 0) {
-    ZSTD_inBuffer in = {read.data(), static_cast<size_t>(from.gcount()), 0};
-    while (!ZSTD_isError(left) && in.pos < in.size) {
-      ZSTD_outBuffer out = {written.data(), written.size(), 0};
-      left = ZSTD_decompressStream(stream.get(), &out, &in);
-      to.write(written.data(), static_cast<std::streamsize>(out.pos));
-    }
-  }
-  if (left != 0) {
+  const auto read = [&](char* buffer, size_t size) {
+    from.read(buffer, static_cast<std::streamsize>(size));
+    return static_cast<size_t>(from.gcount());
+  };
+  const auto write = [&](const char* piece, size_t size) {
+    to.write(piece, static_cast<std::streamsize>(size));
+  };
+  if (!UnpackZstd(read, write)) {
     throw InputError(packed + ": is damaged or cut off; copy it again");
   }
   to.close();

@@ -8,8 +8,10 @@
 #include <filesystem>
 
 #include "core/util/text_file.h"
+#include "frontend/bags/chunk_codec.h"
 #include "frontend/files/image_file.h"
 #include "tests/frontend/bags/ros2_database.h"
+#include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
 namespace {
@@ -167,6 +169,29 @@ TEST_F(Ros2BagTest, ReadsPackedMessages) {
   cut.WriteFrames(0, kFrames);
   ExpectRefused("cut.db3",
                 {"cut.db3: a message: a chunk cannot be decompressed"});
+}
+
+// Recorders that compress in a stream do not know the size when they begin.
+TEST(UnpackMessageTest, TheSizeNeedNotBeStored) {
+  std::string message(300000, 'a');
+  for (size_t i = 0; i < message.size(); i += 7)
+    message[i] = char('a' + i % 23);
+  ZSTD_CStream* const stream = ZSTD_createCStream();
+  ZSTD_initCStream(stream, 1);
+  std::string packed(ZSTD_compressBound(message.size()), '\0');
+  ZSTD_inBuffer in = {message.data(), message.size(), 0};
+  ZSTD_outBuffer out = {packed.data(), packed.size(), 0};
+  while (in.pos < in.size) ZSTD_compressStream(stream, &out, &in);
+  ASSERT_EQ(ZSTD_endStream(stream, &out), 0u);
+  ZSTD_freeCStream(stream);
+  packed.resize(out.pos);
+  ASSERT_EQ(ZSTD_getFrameContentSize(packed.data(), packed.size()),
+            ZSTD_CONTENTSIZE_UNKNOWN);
+  EXPECT_EQ(UnpackMessage(packed), message);
+  EXPECT_EQ(UnpackMessage(PackZstd(message)), message);
+  EXPECT_EQ(UnpackMessage("ros"), "ros");
+  ExpectInputError([&] { UnpackMessage(packed.substr(0, packed.size() / 2)); },
+                   {"cannot be decompressed"});
 }
 
 // --compression-mode file.
