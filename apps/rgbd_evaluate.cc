@@ -117,7 +117,8 @@ int Main() {
                 FLAGS_rpe_delta_metres, ParseFrames(FLAGS_rpe_frames),
                 FLAGS_align == "rigid"});
   if (!FLAGS_run.empty()) {
-    report.consistency = JudgeFrames(ReadFrames(run), truth, noise);
+    report.consistency =
+        JudgeFrames(ReadFrames(run), truth, noise, report.truth_alignment);
   }
   if (!FLAGS_aligned.empty()) {
     for (StampedPose& pose : estimate) {

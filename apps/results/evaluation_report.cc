@@ -269,7 +269,8 @@ json EvaluationToJson(const EvaluationReport& report) {
         {"truth_sigma_origin", noise.origin},
         {"ok", report.consistency->ok},
         {"ok_frames", ToJson(report.consistency->ok_frames)},
-        {"edges", ToJson(report.consistency->edges)}};
+        {"edges", ToJson(report.consistency->edges)},
+        {"ok_frames_in_time", ToJson(report.consistency->in_time)}};
   }
   if (report.final_pose) {
     result["final_pose"] = {

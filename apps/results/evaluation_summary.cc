@@ -47,6 +47,13 @@ std::string FormatEvaluationSummary(const EvaluationReport& report) {
                    frames.wrong, frames.count, frames.nees) +
             "ground truth: " + report.consistency->truth_noise.InWords() +
             ")\n";
+    const Consistency& in_time = report.consistency->in_time;
+    if (10 * frames.wrong > frames.count && 2 * in_time.wrong < frames.wrong) {
+      text += Format(
+          "  most of them by the truth's clock: with it corrected %d of %d "
+          "wrong, NEES %.2f\n",
+          in_time.wrong, in_time.count, in_time.nees);
+    }
   }
   return text;
 }

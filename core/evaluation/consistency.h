@@ -31,6 +31,10 @@ struct RunConsistency {
   int ok = 0;              // frames with this status
   Consistency ok_frames;   // of these, by the motion that gave the pose
   Consistency edges;       // all motions, also of other frames
+
+  // The ok frames once more, with the truth's clock shifted by what fits best
+  // (TruthFixing::shift); no count if that is not known.
+  Consistency in_time = {};
 };
 
 // Judges edges by the truth, interpolated at the `times` (s) of their frames.

@@ -38,7 +38,8 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
       results_.evaluation->consistency =
-          JudgeFrames(results_.frames, *ground_truth, inputs_.truth_noise);
+          JudgeFrames(results_.frames, *ground_truth, inputs_.truth_noise,
+                      results_.evaluation->truth_alignment);
     } catch (const InputError& error) {
       results_.no_evaluation = error.what();
     }
@@ -76,7 +77,8 @@ std::string TrackAll(FrameSource* source, int threads,
 }
 
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
-                           const Trajectory& truth, const TruthNoise& noise) {
+                           const Trajectory& truth, const TruthNoise& noise,
+                           const TruthAlignment& alignment) {
   RunConsistency result;
   result.truth_noise = noise;
   std::vector<double> times;
@@ -90,6 +92,10 @@ RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
   }
   result.ok_frames = Judge(ok_edges, times, truth, noise);
   result.edges = Judge(edges, times, truth, noise);
+  if (alignment.skipped.empty()) {
+    for (double& time : times) time += alignment.fixing.shift;
+    result.in_time = Judge(ok_edges, times, truth, noise);
+  }
   return result;
 }
 

@@ -127,8 +127,10 @@ std::string TrackAll(FrameSource* source, int threads,
                      const std::vector<SequenceRun*>& runs,
                      const std::function<bool(const Frame& frame)>& on_frame);
 
-// Judges the motions of tracked frames and their covariances against the truth.
+// Judges the motions of tracked frames and their covariances against the truth,
+// also with its clock as `alignment` has it.
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
-                           const Trajectory& truth, const TruthNoise& noise);
+                           const Trajectory& truth, const TruthNoise& noise,
+                           const TruthAlignment& alignment);
 
 }  // namespace rgbd_pose
