@@ -40,6 +40,8 @@ class EventfulSource final : public FrameSource {
     Frame frame = frame_;
     frame.index = asked_++;
     frame.timestamp = frame.index / 30.0;
+    frame.gray = frame_.gray.clone();  // a new image, if only by one pixel
+    frame.gray.at<uint8_t>(0, frame.index) ^= 1;
     return RgbdFrame{frame.timestamp, [frame] { return frame; }};
   }
   const RgbdCamera& camera() const override { return camera_; }
