@@ -80,12 +80,12 @@ std::string UnpackZstdMessage(std::string_view packed) {
   };
   const auto write = [&](const char* piece, size_t size) {
     if (unpacked.size() + size > kMaxSize) {
-      throw Damaged("a message cannot be decompressed");
+      throw Damaged("cannot be decompressed");
     }
     unpacked.append(piece, size);
   };
   if (!UnpackZstd(read, write)) {
-    throw Damaged("a message cannot be decompressed");
+    throw Damaged("cannot be decompressed");
   }
   return unpacked;
 }
