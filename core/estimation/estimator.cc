@@ -1,6 +1,7 @@
 #include "core/estimation/estimator.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "core/estimation/covariance_accumulator.h"
@@ -69,13 +70,13 @@ class Estimator::Impl {
 
   void Run(const FramePair& pair, const Rigid3d& guess,
            MotionEstimate* estimate) {
-    if (!guess.IsFinite()) {
-      Reset(pair, Rigid3d(), estimate);
+    const bool is_finite = guess.IsFinite();
+    Reset(pair, is_finite ? guess : Rigid3d(), estimate);
+    if (!is_finite) {
       out_->status = EstimateStatus::kNotConverged;
       out_->reason = "the guess is not finite";
       return;
     }
-    Reset(pair, guess, estimate);
     if (terms_.num_used() < kMinMatches) {
       out_->status = EstimateStatus::kTooFewMatches;
       out_->reason =
@@ -160,37 +161,43 @@ class Estimator::Impl {
       return;
     }
     out_->covariance = shares_.Covariance(terms_, motion, degeneracy.inverse);
-    const int used = terms_.num_used();
-    const double share = static_cast<double>(out_->num_inliers) / used;
-    out_->status = EstimateStatus::kOk;
-    if (terms_.scale() > options_.max_scale) {
+    out_->reason = Contradiction(motion);
+    if (!out_->reason.empty()) {
       out_->status = EstimateStatus::kInconsistent;
-      out_->reason = "residuals are " + std::to_string(terms_.scale()) +
-                     " times as large as the noise model predicts";
-    } else if (share < options_.min_inlier_share) {
-      out_->status = EstimateStatus::kInconsistent;
-      out_->reason = "only " + std::to_string(out_->num_inliers) + " of " +
-                     std::to_string(used) + " matches agree with one motion";
-    } else if (shares_.FalseAlarmsOf(terms_) > options_.max_false_alarms) {
-      out_->status = EstimateStatus::kInconsistent;
-      out_->reason = std::to_string(out_->num_inliers) + " of " +
-                     std::to_string(used) +
-                     " matches agree with one motion, as many as wrong ones "
-                     "may by chance";
-    } else if (shares_.PullOfOutliers(terms_, motion, out_->covariance) >
-               kOneInTwoHundred) {
-      out_->status = EstimateStatus::kInconsistent;
-      out_->reason =
-          "matches that disagree pull the motion away from the others; a loss "
-          "such as tukey leaves them out";
-    } else if (shares_.PriorChiSquared(out_->covariance) > kFiveSigmas) {
-      out_->status = EstimateStatus::kInconsistent;
-      out_->reason = "inconsistent with the prior";
     } else if (!minimiser_.converged()) {
       out_->status = EstimateStatus::kNotConverged;
       out_->reason =
           "stopped after " + std::to_string(out_->iterations) + " iterations";
+    } else {
+      out_->status = EstimateStatus::kOk;
     }
+  }
+
+  // What speaks against the motion, or empty.
+  std::string Contradiction(const MotionDerivatives& motion) {
+    const int used = terms_.num_used();
+    const double share = static_cast<double>(out_->num_inliers) / used;
+    const auto agreeing = [&] {
+      return std::to_string(out_->num_inliers) + " of " + std::to_string(used) +
+             " matches agree with one motion";
+    };
+    if (terms_.scale() > options_.max_scale) {
+      return "residuals are " + std::to_string(terms_.scale()) +
+             " times as large as the noise model predicts";
+    }
+    if (share < options_.min_inlier_share) return "only " + agreeing();
+    if (shares_.FalseAlarmsOf(terms_) > options_.max_false_alarms) {
+      return agreeing() + ", as many as wrong ones may by chance";
+    }
+    if (shares_.PullOfOutliers(terms_, motion, out_->covariance) >
+        kOneInTwoHundred) {
+      return "matches that disagree pull the motion away from the others; a "
+             "loss such as tukey leaves them out";
+    }
+    if (shares_.PriorChiSquared(out_->covariance) > kFiveSigmas) {
+      return "inconsistent with the prior";
+    }
+    return "";
   }
 
   const EstimatorOptions options_;
