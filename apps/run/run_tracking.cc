@@ -121,8 +121,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
       });
   Warn(DroppedFrames(*source, run->damaged(), run->repeated()));
   if (!stopped.empty()) return stopped;
-  const size_t left_out = run->damaged().size() + run->repeated().color;
-  return run->frames().size() + left_out == size ? "" : ended_by;
+  return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
 }
 
 int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,

@@ -148,12 +148,15 @@ std::vector<std::string> DroppedFrames(const FrameSource& source,
        {std::pair(count - kMaxNamed, " further frames are damaged"),
         {source.unmatched_color(),
          " colour images have no depth image of the same time"},
-        {repeated.color,
-         " frames repeat the colour image before them under a new time stamp"},
         {source.dropped(),
          " frames arrived faster than they were processed"}}) {
     if (number <= 0) continue;
     lines.push_back(std::to_string(number) + what + " and are left out");
+  }
+  if (repeated.color > 0) {
+    lines.push_back(std::to_string(repeated.color) +
+                    " frames repeat the colour image before them under a new "
+                    "time stamp; they are degraded");
   }
   if (repeated.depth > 0) {
     lines.push_back(std::to_string(repeated.depth) +

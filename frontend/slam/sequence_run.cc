@@ -31,6 +31,16 @@ void SequenceRun::Add(const PreparedFrame& frame,
   }
 }
 
+void SequenceRun::DegradeLast(const std::string& reason) {
+  const auto degrade = [&](TrackedFrame* tracked) {
+    if (tracked->status != TrackingStatus::kOk) return;
+    tracked->status = TrackingStatus::kDegraded;
+    tracked->reason = reason;
+  };
+  degrade(&results_.frames.back());
+  if (slam_ != nullptr) degrade(&slam_frames_.back().tracked);
+}
+
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   if (slam_ != nullptr) slam_->Finish();
   results_.trajectory = Path();
@@ -66,8 +76,11 @@ std::string TrackAll(FrameSource* source, int threads,
       threads, runs.front()->inputs().max_damaged);
   RepeatedImages repeated;
   while (std::optional<StreamedFrame> next = stream.Next()) {
-    if (!repeated.IsNew(&next->frame)) continue;
-    for (SequenceRun* run : runs) run->Add(*next);
+    const bool is_repeated = repeated.IsRepeated(&next->frame);
+    for (SequenceRun* run : runs) {
+      run->Add(*next);
+      if (is_repeated) run->DegradeLast("its colour image is the one before");
+    }
     if (on_frame && !on_frame(next->frame)) break;
   }
   for (SequenceRun* run : runs) {

@@ -39,7 +39,7 @@ struct ResidualHistogram {
 };
 
 struct RunResults {
-  std::vector<TrackedFrame> frames;  // of the input frames used, in order
+  std::vector<TrackedFrame> frames;  // one per input frame, in order
   std::vector<std::string> damaged;  // input frames left out, and why
   RepeatedCounts repeated;           // images that were sent twice
   Trajectory trajectory;             // of the frames that were not lost
@@ -74,6 +74,9 @@ class SequenceRun {
 
   // The same for any frame; see Odometry::Track. The guess may be null.
   void Add(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess);
+
+  // What was found of the last frame is not to be relied on.
+  void DegradeLast(const std::string& reason);
 
   // The odometry that tracks the frames and can prepare frames in advance.
   const Odometry& odometry() const {

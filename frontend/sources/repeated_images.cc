@@ -6,7 +6,7 @@ namespace rgbd_pose {
 namespace {
 
 // Whether an image shows something and is the same as another one.
-bool IsRepeated(const cv::Mat& image, const cv::Mat& before) {
+bool IsTheSame(const cv::Mat& image, const cv::Mat& before) {
   if (image.size() != before.size() || image.type() != before.type()) {
     return false;
   }
@@ -21,21 +21,21 @@ bool IsRepeated(const cv::Mat& image, const cv::Mat& before) {
 
 }  // namespace
 
-bool RepeatedImages::IsNew(Frame* frame) {
-  const bool has_color = !IsRepeated(frame->gray, gray_);
-  const bool has_depth = !IsRepeated(frame->depth, depth_);
+bool RepeatedImages::IsRepeated(Frame* frame) {
+  const bool has_color = !IsTheSame(frame->gray, gray_);
+  const bool has_depth = !IsTheSame(frame->depth, depth_);
   gray_ = frame->gray;
   depth_ = frame->depth;
   if (!has_color) {
     ++counts_.color;
-    return false;
+    return true;
   }
   if (!has_depth) {
     ++counts_.depth;
     // A new image: an assigned expression would be written into the old one.
     frame->depth = cv::Mat(frame->depth.size(), CV_16UC1, cv::Scalar(0));
   }
-  return true;
+  return false;
 }
 
 }  // namespace rgbd_pose

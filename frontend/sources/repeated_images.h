@@ -8,8 +8,8 @@ namespace rgbd_pose {
 
 // How many images were sent twice, see RepeatedImages.
 struct RepeatedCounts {
-  int color = 0;  // frames left out, since their colour image is not new
-  int depth = 0;  // frames whose depth image was not new and is not used
+  int color = 0;  // frames whose colour image is not new
+  int depth = 0;  // frames with a new colour image and a depth image not used
 };
 
 // Notices images that a driver has sent again under a new time stamp, as some
@@ -18,10 +18,11 @@ struct RepeatedCounts {
 // (a dark room, a covered lens) may be equal all the same.
 class RepeatedImages {
  public:
-  // To be called for each frame in turn. Returns false if the frame is to be
-  // left out, as its colour image is the one before. A depth image that is the
-  // one before is replaced by one without depth.
-  bool IsNew(Frame* frame);
+  // To be called for each frame in turn. Returns whether its colour image is
+  // the one before: its pose is then that of an earlier time, unless the camera
+  // stood still or the recorder filled a gap. A depth image that is the one
+  // before, beside a new colour image, is replaced by one without depth.
+  bool IsRepeated(Frame* frame);
 
   // What was found so far.
   const RepeatedCounts& counts() const { return counts_; }

@@ -71,7 +71,7 @@ function header(data) {
       `frames/s with decoding, ${run.threads} thread${run.threads === 1 ? '' : 's'}`);
   for (const [key, text] of [
     ['damaged_frames', 'damaged frames, left out'],
-    ['repeated_color', 'colour images sent twice, left out'],
+    ['repeated_color', 'colour images sent twice'],
     ['repeated_depth', 'depth images sent twice, not used'],
     ['unmatched_color', 'colour images without depth, left out'],
     ['dropped_frames', 'frames left out because tracking was too slow'],

@@ -29,11 +29,12 @@ class RepeatedImagesTest : public testing::Test {
   RepeatedImages images_;
 };
 
-TEST_F(RepeatedImagesTest, LeavesOutFramesWithoutANewColourImage) {
-  for (const auto& [gray, depth, is_new] :
-       {std::tuple(0, 0, true), {0, 1, false}, {0, 1, false}, {1, 0, true}}) {
+TEST_F(RepeatedImagesTest, FindsFramesWithoutANewColourImage) {
+  for (const auto& [gray, depth, is_repeated] :
+       {std::tuple(0, 0, false), {0, 1, true}, {0, 1, true}, {1, 0, false}}) {
     Frame frame = FrameOf(gray_[gray], depth_[depth]);
-    EXPECT_EQ(images_.IsNew(&frame), is_new);
+    EXPECT_EQ(images_.IsRepeated(&frame), is_repeated);
+    EXPECT_EQ(cv::countNonZero(frame.depth), 48 * 64);
   }
   EXPECT_EQ(images_.counts().color, 2);
   EXPECT_EQ(images_.counts().depth, 0);
@@ -45,7 +46,7 @@ TEST_F(RepeatedImagesTest, DoesNotUseADepthImageTwice) {
   Frame third = FrameOf(gray_[0], depth_[1]);
   const cv::Mat sent = second.depth;
   for (Frame* frame : {&first, &second, &third}) {
-    EXPECT_TRUE(images_.IsNew(frame));
+    EXPECT_FALSE(images_.IsRepeated(frame));
   }
   EXPECT_EQ(images_.counts().depth, 1);
   EXPECT_EQ(cv::countNonZero(first.depth), 48 * 64);
@@ -60,8 +61,8 @@ TEST_F(RepeatedImagesTest, OnePixelMakesAnImageNew) {
   Frame second = first;
   second.gray = first.gray.clone();
   second.gray.at<uint8_t>(47, 63) ^= 1;
-  EXPECT_TRUE(images_.IsNew(&first));
-  EXPECT_TRUE(images_.IsNew(&second));
+  EXPECT_FALSE(images_.IsRepeated(&first));
+  EXPECT_FALSE(images_.IsRepeated(&second));
 }
 
 TEST_F(RepeatedImagesTest, DarkImagesMayBeEqual) {
@@ -69,7 +70,7 @@ TEST_F(RepeatedImagesTest, DarkImagesMayBeEqual) {
   const cv::Mat none = cv::Mat::zeros(48, 64, CV_16UC1);
   for (int i = 0; i < 3; ++i) {
     Frame frame = FrameOf(black, none);
-    EXPECT_TRUE(images_.IsNew(&frame));
+    EXPECT_FALSE(images_.IsRepeated(&frame));
   }
   EXPECT_EQ(images_.counts().color, 0);
   EXPECT_EQ(images_.counts().depth, 0);
