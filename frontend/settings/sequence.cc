@@ -153,15 +153,12 @@ std::vector<std::string> DroppedFrames(const FrameSource& source,
     if (number <= 0) continue;
     lines.push_back(std::to_string(number) + what + " and are left out");
   }
-  if (repeated.color > 0) {
-    lines.push_back(std::to_string(repeated.color) +
-                    " frames repeat the colour image before them under a new "
-                    "time stamp; they are degraded");
-  }
-  if (repeated.depth > 0) {
-    lines.push_back(std::to_string(repeated.depth) +
-                    " frames repeat the depth image before them, which is not "
-                    "used again");
+  for (const auto& [number, image] :
+       {std::pair(repeated.color, "colour"), {repeated.depth, "depth"}}) {
+    if (number <= 0) continue;
+    lines.push_back(std::to_string(number) + " frames repeat the " + image +
+                    " image before them under a new time stamp; they are "
+                    "degraded");
   }
   for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;

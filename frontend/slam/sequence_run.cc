@@ -75,11 +75,12 @@ std::string TrackAll(FrameSource* source, int threads,
       source, [&first](const PreparedFrame& frame) { first.Prepare(frame); },
       threads, runs.front()->inputs().max_damaged);
   RepeatedImages repeated;
-  while (std::optional<StreamedFrame> next = stream.Next()) {
-    const bool is_repeated = repeated.IsRepeated(&next->frame);
+  while (const std::optional<StreamedFrame> next = stream.Next()) {
+    const bool is_repeated = repeated.IsRepeated(next->frame);
     for (SequenceRun* run : runs) {
       run->Add(*next);
-      if (is_repeated) run->DegradeLast("its colour image is the one before");
+      if (is_repeated)
+        run->DegradeLast("an image of it is that of the frame before");
     }
     if (on_frame && !on_frame(next->frame)) break;
   }

@@ -21,21 +21,14 @@ bool IsTheSame(const cv::Mat& image, const cv::Mat& before) {
 
 }  // namespace
 
-bool RepeatedImages::IsRepeated(Frame* frame) {
-  const bool has_color = !IsTheSame(frame->gray, gray_);
-  const bool has_depth = !IsTheSame(frame->depth, depth_);
-  gray_ = frame->gray;
-  depth_ = frame->depth;
-  if (!has_color) {
-    ++counts_.color;
-    return true;
-  }
-  if (!has_depth) {
-    ++counts_.depth;
-    // A new image: an assigned expression would be written into the old one.
-    frame->depth = cv::Mat(frame->depth.size(), CV_16UC1, cv::Scalar(0));
-  }
-  return false;
+bool RepeatedImages::IsRepeated(const Frame& frame) {
+  const bool is_old_color = IsTheSame(frame.gray, gray_);
+  const bool is_old_depth = IsTheSame(frame.depth, depth_);
+  counts_.color += is_old_color;
+  counts_.depth += is_old_depth;
+  gray_ = frame.gray;
+  depth_ = frame.depth;
+  return is_old_color || is_old_depth;
 }
 
 }  // namespace rgbd_pose

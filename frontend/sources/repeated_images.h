@@ -9,7 +9,7 @@ namespace rgbd_pose {
 // How many images were sent twice, see RepeatedImages.
 struct RepeatedCounts {
   int color = 0;  // frames whose colour image is not new
-  int depth = 0;  // frames with a new colour image and a depth image not used
+  int depth = 0;  // frames whose depth image is not new
 };
 
 // Notices images that a driver has sent again under a new time stamp, as some
@@ -18,11 +18,10 @@ struct RepeatedCounts {
 // (a dark room, a covered lens) may be equal all the same.
 class RepeatedImages {
  public:
-  // To be called for each frame in turn. Returns whether its colour image is
-  // the one before: its pose is then that of an earlier time, unless the camera
-  // stood still or the recorder filled a gap. A depth image that is the one
-  // before, beside a new colour image, is replaced by one without depth.
-  bool IsRepeated(Frame* frame);
+  // To be called for each frame in turn. Returns whether its colour or depth
+  // image is the one before: what it shows is then of an earlier time, unless
+  // the camera stood still or a recorder filled a gap.
+  bool IsRepeated(const Frame& frame);
 
   // What was found so far.
   const RepeatedCounts& counts() const { return counts_; }

@@ -72,7 +72,7 @@ function header(data) {
   for (const [key, text] of [
     ['damaged_frames', 'damaged frames, left out'],
     ['repeated_color', 'colour images sent twice'],
-    ['repeated_depth', 'depth images sent twice, not used'],
+    ['repeated_depth', 'depth images sent twice'],
     ['unmatched_color', 'colour images without depth, left out'],
     ['dropped_frames', 'frames left out because tracking was too slow'],
   ]) {

@@ -29,30 +29,18 @@ class RepeatedImagesTest : public testing::Test {
   RepeatedImages images_;
 };
 
-TEST_F(RepeatedImagesTest, FindsFramesWithoutANewColourImage) {
-  for (const auto& [gray, depth, is_repeated] :
-       {std::tuple(0, 0, false), {0, 1, true}, {0, 1, true}, {1, 0, false}}) {
-    Frame frame = FrameOf(gray_[gray], depth_[depth]);
-    EXPECT_EQ(images_.IsRepeated(&frame), is_repeated);
-    EXPECT_EQ(cv::countNonZero(frame.depth), 48 * 64);
+TEST_F(RepeatedImagesTest, FindsFramesOfWhichAnImageIsNotNew) {
+  for (const auto& [gray, depth, is_repeated] : {std::tuple(0, 0, false),
+                                                 {0, 1, true},
+                                                 {0, 1, true},
+                                                 {1, 0, false},
+                                                 {0, 0, true},
+                                                 {1, 1, false}}) {
+    EXPECT_EQ(images_.IsRepeated(FrameOf(gray_[gray], depth_[depth])),
+              is_repeated);
   }
   EXPECT_EQ(images_.counts().color, 2);
-  EXPECT_EQ(images_.counts().depth, 0);
-}
-
-TEST_F(RepeatedImagesTest, DoesNotUseADepthImageTwice) {
-  Frame first = FrameOf(gray_[0], depth_[0]);
-  Frame second = FrameOf(gray_[1], depth_[0]);
-  Frame third = FrameOf(gray_[0], depth_[1]);
-  const cv::Mat sent = second.depth;
-  for (Frame* frame : {&first, &second, &third}) {
-    EXPECT_FALSE(images_.IsRepeated(frame));
-  }
-  EXPECT_EQ(images_.counts().depth, 1);
-  EXPECT_EQ(cv::countNonZero(first.depth), 48 * 64);
-  EXPECT_EQ(cv::countNonZero(second.depth), 0);
-  EXPECT_EQ(cv::countNonZero(third.depth), 48 * 64);
-  EXPECT_EQ(cv::countNonZero(sent), 48 * 64) << "images are shared";
+  EXPECT_EQ(images_.counts().depth, 2);
 }
 
 // One pixel may be all that differs between two images without noise.
@@ -61,8 +49,8 @@ TEST_F(RepeatedImagesTest, OnePixelMakesAnImageNew) {
   Frame second = first;
   second.gray = first.gray.clone();
   second.gray.at<uint8_t>(47, 63) ^= 1;
-  EXPECT_FALSE(images_.IsRepeated(&first));
-  EXPECT_FALSE(images_.IsRepeated(&second));
+  EXPECT_FALSE(images_.IsRepeated(first));
+  EXPECT_FALSE(images_.IsRepeated(second));
 }
 
 TEST_F(RepeatedImagesTest, DarkImagesMayBeEqual) {
@@ -70,7 +58,7 @@ TEST_F(RepeatedImagesTest, DarkImagesMayBeEqual) {
   const cv::Mat none = cv::Mat::zeros(48, 64, CV_16UC1);
   for (int i = 0; i < 3; ++i) {
     Frame frame = FrameOf(black, none);
-    EXPECT_FALSE(images_.IsRepeated(&frame));
+    EXPECT_FALSE(images_.IsRepeated(frame));
   }
   EXPECT_EQ(images_.counts().color, 0);
   EXPECT_EQ(images_.counts().depth, 0);
