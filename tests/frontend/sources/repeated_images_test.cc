@@ -49,6 +49,7 @@ TEST_F(RepeatedImagesTest, OnePixelMakesAnImageNew) {
   Frame second = first;
   second.gray = first.gray.clone();
   second.gray.at<uint8_t>(47, 63) ^= 1;
+  second.depth = depth_[1];
   EXPECT_FALSE(images_.IsRepeated(first));
   EXPECT_FALSE(images_.IsRepeated(second));
 }
