@@ -6,6 +6,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
+#include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"
 
 namespace rgbd_pose {
@@ -58,9 +59,13 @@ struct FrameView {
   double depth_scale = 5000.0;  // raw units per metre
   DepthNoiseModel depth_noise;  // must be filled in
 
-  // Exposure times of rows. Direct costs correct look-ups in a current frame by
-  // them. A previous frame must be of one moment (FrameRectifier).
+  // Exposure times of rows. Direct costs correct by them where they look points
+  // up in a current frame, and where the points of a previous frame are.
   FrameTiming timing;
+
+  // Where the axes that a motion refers to are if they are not those of the
+  // camera at the stamp. Only a previous frame may have such axes.
+  Rigid3d reference_from_stamp;
 
   // Moving objects in levels[0], ignored by direct costs; null: none known.
   const CellMask* moving = nullptr;

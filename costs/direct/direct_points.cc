@@ -43,6 +43,50 @@ double DepthBefore(const FrameView& frame, int column, int row, int scale) {
           frame.DepthAt(column, row - 1) + frame.DepthAt(column - 1, row - 1));
 }
 
+// Finds the point (camera axes at the stamp, m) that a pixel of a level shows if
+// rows, or gray levels and depths, were exposed at different times. (column,
+// row): as in DepthBefore. The depth was measured when the camera saw the point
+// elsewhere; where that is depends on the depth itself, so it is looked up twice.
+bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
+                 const Eigen::Vector2i& at, int column, int row,
+                 double* depth, Eigen::Vector3d* X) {
+  constexpr double kUsualDepth = 2.0;  // m, to begin with where none is known
+  constexpr int kSteps = 2;
+  const FrameTiming& timing = frame.timing;
+  const Camera& camera = frame.levels[0].camera;
+  const Lens<double> lens = camera.MakeLens();
+  const Eigen::Vector3d ray = level.camera.Unproject(at.cast<double>(), 1.0);
+  if (!ray.allFinite()) return false;
+  const double seconds = timing.color.RowTime(at.y(), level.gray.height);
+  double z = frame.DepthAt(column, row);
+  if (z == 0.0) z = kUsualDepth;
+  for (int step = 0; step < kSteps; ++step) {
+    *X = timing.twist.MovedPoint(ray * z, -seconds);
+    Eigen::Vector3d measured;
+    MoveToRow(camera, lens, timing.depth, timing.twist, X->data(),
+              measured.data());
+    if (!(measured.z() > DirectInput::kMinDepth)) return false;
+    const Eigen::Vector2d pixel = camera.Project(measured);
+    if (!(pixel.x() >= 1.5 && pixel.y() >= 1.5 &&
+          pixel.x() < frame.depth.width - 2.5 &&
+          pixel.y() < frame.depth.height - 2.5)) {
+      return false;
+    }
+    const int u = static_cast<int>(pixel.x() + 0.5);
+    const int v = static_cast<int>(pixel.y() + 0.5);
+    if (!IsOneSurface(frame, u, v)) return false;
+    // The slope of the surface, as the pixel is not at (u, v) exactly.
+    const double right = 0.5 * (frame.DepthAt(u + 1, v) - frame.DepthAt(u - 1, v));
+    const double down = 0.5 * (frame.DepthAt(u, v + 1) - frame.DepthAt(u, v - 1));
+    const double seen = frame.DepthAt(u, v) + right * (pixel.x() - u) +
+                        down * (pixel.y() - v);
+    z += seen - measured.z();
+  }
+  *depth = z;
+  *X = timing.twist.MovedPoint(ray * z, -seconds);
+  return true;
+}
+
 // The plane through 5 x 5 inverse depths around a pixel of the full resolution:
 // 1 / z = inverse_depth + slope . (pixel - this pixel).
 struct InverseDepthPlane {
@@ -114,6 +158,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
   const int border = std::max(2, (kBorder + scale - 1) / scale);
   const int flat =
       static_cast<int>(4.0 * options.min_gradient * options.min_gradient);
+  const bool moves = !frame.timing.IsOneMoment();
   points->Clear(
       5, static_cast<size_t>(gray.width / cell + 1) * (gray.height / cell + 1));
   for (int top = border; top < gray.height - border; top += cell) {
@@ -126,12 +171,18 @@ void TexturedPoints(const FrameView& frame, int level_index,
       // The centre of the level's pixel, at full resolution.
       const int u = at.x() * scale + scale / 2;
       const int v = at.y() * scale + scale / 2;
-      if (!IsOneSurface(frame, u, v)) continue;
-      const double depth = DepthBefore(frame, u, v, scale);
+      double depth = 0.0;
+      Eigen::Vector3d X;
+      if (moves) {
+        if (!MovingPoint(frame, level, at, u, v, &depth, &X)) continue;
+        X = frame.reference_from_stamp * X;
+      } else {
+        if (!IsOneSurface(frame, u, v)) continue;
+        depth = DepthBefore(frame, u, v, scale);
+        X = level.camera.Unproject(at.cast<double>(), depth);
+        if (!X.allFinite()) continue;
+      }
       if (depth < options.min_depth || depth > options.max_depth) continue;
-      const Eigen::Vector3d X =
-          level.camera.Unproject(at.cast<double>(), depth);
-      if (!X.allFinite()) continue;
       points->Append(std::array{X.x(), X.y(), X.z(),
                                 frame.depth_noise.sigma(depth),
                                 static_cast<double>(gray.At(at.x(), at.y()))});
@@ -145,23 +196,35 @@ void SmoothPoints(const FrameView& frame, int /*level*/,
   // At angles between ray and surface below 15 degrees, points hardly help.
   constexpr double kMinCosine = 0.25;
   const Camera& camera = frame.levels[0].camera;
+  const FrameTiming& timing = frame.timing;
+  const bool moves = !timing.IsOneMoment();
   const int width = frame.depth.width, height = frame.depth.height;
   const int cell =
       CellSize(static_cast<double>(width) * height, options.max_points);
   points->Clear(7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
   for (int v = kBorder + cell / 2; v < height - kBorder; v += cell) {
+    Rigid3d moved;  // from where the camera was when it measured this row
+    if (moves) {
+      moved = frame.reference_from_stamp *
+              timing.twist.MotionDuring(-timing.depth.RowTime(v, height));
+    }
     for (int u = kBorder + cell / 2; u < width - kBorder; u += cell) {
       InverseDepthPlane fit;
       if (!FitInverseDepthPlane(frame, u, v, &fit)) continue;
       const double depth = 1.0 / fit.inverse_depth;
       if (depth < options.min_depth || depth > options.max_depth) continue;
-      const Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
+      Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
       const Eigen::Vector3d ray = X / depth;
       const Eigen::Vector2d slope =
           camera.ProjectDerivative(ray.head<2>()).transpose() * fit.slope;
-      const Eigen::Vector3d N(slope.x(), slope.y(),
-                              fit.inverse_depth - slope.dot(ray.head<2>()));
+      Eigen::Vector3d N(slope.x(), slope.y(),
+                        fit.inverse_depth - slope.dot(ray.head<2>()));
       if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;
+      if (moves) {
+        X = moved * X;
+        N = moved.rotation * N;
+        N /= N.dot(X);
+      }
       points->Append(std::array{X.x(), X.y(), X.z(), N.x(), N.y(), N.z(),
                                 frame.depth_noise.sigma(depth)});
     }

@@ -86,7 +86,8 @@ struct DirectOptions {
 
 // The pixel of each cell with the largest gradient. A cell gives none if its
 // gradients are below min_gradient, or if the depth around that pixel has holes
-// or edges. Columns: X (m), sigma of its depth (m), its gray level.
+// or edges. Columns: X (m, FrameView::reference_from_stamp), sigma of its depth
+// (m), its gray level.
 void TexturedPoints(const FrameView& frame, int level,
                     const DirectOptions& options, PackedColumns* points);
 

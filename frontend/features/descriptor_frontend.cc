@@ -40,8 +40,7 @@ class DescriptorFrontend final : public Frontend {
     features->described = all.Select(SelectOverGrid(
         all.keypoints, frame, options_.max_features, options_.depth));
     for (const cv::KeyPoint& keypoint : features->described.keypoints) {
-      features->observations.push_back(
-          ObserveAt(frame, keypoint.pt, method_.SigmaPx(keypoint)));
+      AddFeature(frame, keypoint.pt, method_.SigmaPx(keypoint), features.get());
     }
     return features;
   }

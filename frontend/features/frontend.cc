@@ -34,6 +34,19 @@ std::string FrontendOptions::Check() const {
   return depth.Check();
 }
 
+void Frontend::ObserveAgain(const Frame& frame,
+                            const Rigid3d& reference_from_stamp,
+                            FeatureSet* features) const {
+  const Camera& camera = options_.camera;
+  for (size_t i = 0; i < features->points.size(); ++i) {
+    const cv::Point2f& point = features->points[i];
+    Observation& o = features->observations[i];
+    o = MovedObservation(
+        Observe(frame, camera, point.x, point.y, o.sigma_px, options_.depth),
+        camera, reference_from_stamp);
+  }
+}
+
 std::vector<std::string> FrontendNames() { return NamesOf(kFrontends); }
 
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,

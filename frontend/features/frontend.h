@@ -38,7 +38,9 @@ class FeatureSet {
  public:
   virtual ~FeatureSet() = default;
 
-  // Where the features are in their own frame.
+  // Where the features are in their own frame: image points (px, distorted), and
+  // what was measured there.
+  std::vector<cv::Point2f> points;
   std::vector<Observation> observations;
 };
 
@@ -86,6 +88,12 @@ class Frontend {
   // may reuse the memory for the next frame.
   virtual std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) = 0;
 
+  // Observes the features of a frame again: its velocity (Frame::twist) is known
+  // better now. The motion from the camera at its stamp to the axes that motions
+  // to other frames start from is no longer the identity if the stamp has moved.
+  void ObserveAgain(const Frame& frame, const Rigid3d& reference_from_stamp,
+                    FeatureSet* features) const;
+
   // Clears `matches` and fills it with the features of `reference` found in
   // `frame`. The guess says where to search first.
   virtual void Match(const FeatureSet& reference, const PreparedFrame& frame,
@@ -103,6 +111,13 @@ class Frontend {
                         double sigma_px) const {
     return Observe(frame, options_.camera, point.x, point.y,
                    options_.feature_noise * sigma_px, options_.depth);
+  }
+
+  // Adds the feature at an image point of its frame.
+  void AddFeature(const Frame& frame, const cv::Point2f& point, double sigma_px,
+                  FeatureSet* features) const {
+    features->points.push_back(point);
+    features->observations.push_back(ObserveAt(frame, point, sigma_px));
   }
 
   const FrontendOptions options_;  // as given to the constructor

@@ -59,14 +59,13 @@ struct PatchFeatures : FeatureSet {
     patch.ref_from_patch = rounded;
     for (size_t level = 0; level < pyramid.size(); ++level) {
       MakePatch(pyramid[level],
-                {ToLevel(corners[i].x, level), ToLevel(corners[i].y, level)},
+                {ToLevel(points[i].x, level), ToLevel(points[i].y, level)},
                 rounded, &patch.levels[level]);
     }
     return patch;
   }
 
   std::vector<cv::Mat> pyramid;  // shares all but level 0 with the frame
-  std::vector<cv::Point2f> corners;
   mutable std::vector<PatchStack> patches;  // see Patches
 };
 
@@ -100,12 +99,11 @@ class PatchFrontend final : public Frontend {
 
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override {
     auto features = std::make_unique<PatchFeatures>(frame);
-    features->corners =
-        DetectGridCorners(frame, options_.max_features, options_.depth);
-    for (const cv::Point2f& corner : features->corners) {
-      features->observations.push_back(ObserveAt(frame, corner, kPatchSigmaPx));
+    for (const cv::Point2f& corner :
+         DetectGridCorners(frame, options_.max_features, options_.depth)) {
+      AddFeature(frame, corner, kPatchSigmaPx, features.get());
     }
-    features->patches.resize(features->corners.size());
+    features->patches.resize(features->points.size());
     return features;
   }
 
@@ -119,8 +117,9 @@ class PatchFrontend final : public Frontend {
         static_cast<int>(std::min(features.pyramid.size(), pyramid.size()));
     const Camera& camera = options_.camera;
     const FrameTiming timing = frame.Timing();
-    for (size_t i = 0; i < features.corners.size(); ++i) {
+    for (size_t i = 0; i < features.points.size(); ++i) {
       const Observation& ref = features.observations[i];
+      if (ref.depth == 0.0) continue;  // lost with a better velocity
       const Eigen::Vector3d point = cur_from_ref_guess * PointOf(ref);
       if (!(point.z() >= options_.depth.min_depth)) continue;
       const Eigen::Vector2d start = ImagePoint(camera, timing, point);

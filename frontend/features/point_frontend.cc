@@ -14,7 +14,6 @@ constexpr double kPointSigmaPx = 0.5;
 
 struct PointFeatures : FeatureSet {
   PreparedFrame frame;  // a copy
-  std::vector<cv::Point2f> points;
 };
 
 }  // namespace
@@ -24,10 +23,10 @@ std::unique_ptr<FeatureSet> PointFrontend::Detect(const PreparedFrame& frame) {
   Points points;
   Find(frame, &points);
   for (const cv::Point2f& point : points) {
-    const Observation observation = ObserveAt(frame, point, kPointSigmaPx);
-    if (observation.depth <= 0.0) continue;
-    features->points.push_back(point);
-    features->observations.push_back(observation);
+    AddFeature(frame, point, kPointSigmaPx, features.get());
+    if (features->observations.back().depth > 0.0) continue;
+    features->points.pop_back();
+    features->observations.pop_back();
   }
   Frame copy = frame;
   copy.gray = frame.gray.clone();
@@ -46,9 +45,9 @@ void PointFrontend::Match(const FeatureSet& reference,
   Points moved = features.points;
   const FrameTiming timing = frame.Timing();
   for (size_t i = 0; i < moved.size(); ++i) {
-    const Eigen::Vector3d point =
-        cur_from_ref_guess * PointOf(features.observations[i]);
-    if (point.z() < options_.depth.min_depth) continue;
+    const Observation& ref = features.observations[i];
+    const Eigen::Vector3d point = cur_from_ref_guess * PointOf(ref);
+    if (ref.depth == 0.0 || point.z() < options_.depth.min_depth) continue;
     const Eigen::Vector2d pixel = ImagePoint(options_.camera, timing, point);
     moved[i] = cv::Point2d(pixel.x(), pixel.y());
   }

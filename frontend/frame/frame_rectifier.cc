@@ -12,15 +12,16 @@ FrameRectifier::FrameRectifier(const Camera& camera)
              0.0) {}
 
 Frame FrameRectifier::Rectify(const Frame& frame) {
-  const FrameTiming timing = frame.Timing();
-  return Rectify(frame,
-                 timing.twist.MotionDuring(timing.color.offset).Inverse());
+  return Rectify(frame, Rigid3d());
 }
 
 Frame FrameRectifier::Rectify(const Frame& frame,
-                              const Rigid3d& target_from_middle) {
+                              const Rigid3d& target_from_stamp) {
   const FrameTiming timing = frame.Timing();
   if (timing.IsOneMoment()) return frame;
+  const Rigid3d target_from_middle =
+      target_from_stamp *
+      timing.twist.MotionDuring(timing.color.offset).Inverse();
   Frame rectified = frame;
   rectified.depth_delay = 0.0;
   rectified.depth_shutter = Shutter();

@@ -23,9 +23,8 @@ class FrameRectifier {
   // or nothing has to be corrected, the frame is returned with shared images.
   Frame Rectify(const Frame& frame);
 
-  // The same, seen from a pose nearby. `target_from_middle` is relative to the
-  // camera at the exposure of the middle row of colour.
-  Frame Rectify(const Frame& frame, const Rigid3d& target_from_middle);
+  // The same, seen from a pose nearby.
+  Frame Rectify(const Frame& frame, const Rigid3d& target_from_stamp);
 
  private:
   // The motion of an image point at a grid node: turn + shift / z, px.
@@ -33,6 +32,7 @@ class FrameRectifier {
     Eigen::Vector2f turn, shift;
   };
 
+  // `target_from_middle`: from the camera at the exposure of the middle row.
   void MakeFlows(const Frame& frame, const Rigid3d& target_from_middle);
   // Fills the maps. `depth`: the warped depth image.
   void MakeMaps(const cv::Mat& depth, double depth_scale);

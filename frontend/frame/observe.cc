@@ -103,6 +103,19 @@ Observation ObserveAgain(const Frame& frame, const Camera& camera,
                        pixel.y(), seen.z(), before.sigma_px, depth_options);
 }
 
+Observation MovedObservation(const Observation& seen, const Camera& camera,
+                             const Rigid3d& other_from_camera) {
+  const double depth = seen.depth > 0.0 ? seen.depth : kUsualDepth;
+  const Eigen::Vector3d point =
+      other_from_camera * (camera.Ray(seen.u, seen.v) * depth);
+  Observation moved = seen;
+  moved.u = camera.fx * point.x() / point.z() + camera.cx;
+  moved.v = camera.fy * point.y() / point.z() + camera.cy;
+  if (seen.depth > 0.0) moved.depth = point.z();
+  moved.normal = other_from_camera.rotation * seen.normal;
+  return moved;
+}
+
 Eigen::Vector2d ImagePoint(const Camera& camera, const FrameTiming& timing,
                            const Eigen::Vector3d& point) {
   if (timing.color.IsGlobal()) return camera.Project(point);

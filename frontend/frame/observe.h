@@ -4,6 +4,7 @@
 
 #include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
@@ -23,6 +24,10 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
 Observation ObserveAgain(const Frame& frame, const Camera& camera,
                          const FrameTiming& moved_by, const Observation& before,
                          const DepthLookupOptions& depth_options);
+
+// The observation in the axes of another camera nearby, which stands still.
+Observation MovedObservation(const Observation& seen, const Camera& camera,
+                             const Rigid3d& other_from_camera);
 
 // The inverse: the image point (px, distorted) of a 3D point (m, camera axes at
 // the stamp, z > 0) in a frame with this timing.

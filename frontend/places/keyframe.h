@@ -60,8 +60,11 @@ struct Keyframe {
   int segment = 0;         // poses of one segment share one world frame
   Rigid3d world_from_cam;  // world of its segment or of its part of the map
 
-  // The decoded and the compressed images. One of the two may be empty.
+  // The decoded and the compressed images. One of the two may be empty. While
+  // frames are tracked against it, the images are as they were exposed, and the
+  // pose is that of these axes near the camera at the stamp.
   PreparedFrame frame = {};
+  Rigid3d reference_from_stamp = {};
   StoredImages images = {};
 
   // What the uncertainty of the frame's velocity and capture time adds to the

@@ -32,7 +32,8 @@ Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
     : options_(options),
       graph_(options.window, options.drift),
       tracker_(std::move(tracker)),
-      tracked_(tracker_->images().camera) {
+      tracked_(tracker_->images().camera),
+      rectifier_(tracker_->images().camera) {
   RequireSound(options.Check(), "mapping: ");
 }
 
@@ -90,6 +91,13 @@ MapUpdate Mapper::Add(Keyframe added,
     added.world_from_cam =
         graph_.pose(edges[0].ref) * edges[0].cur_from_ref.Inverse();
   }
+  if (!added.frame.Timing().IsOneMoment()) {
+    added.frame = PreparedFrame(
+        rectifier_.Rectify(added.frame, added.reference_from_stamp));
+    added.reference_from_stamp = Rigid3d();
+    added.features.reset();
+  }
+  added.frame.depth_delay = 0.0;  // the images are of one moment now
   const PreparedFrame frame = added.Unpacked();
   const int newest = AddKeyframe(std::move(added), frame, /*is_held=*/false);
   for (RelativePose& edge : edges) {

@@ -12,6 +12,7 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/view_overlap.h"
+#include "frontend/frame/frame_rectifier.h"
 #include "frontend/places/keyframe.h"
 #include "frontend/places/place_database.h"
 #include "frontend/slam/keyframe_graph.h"
@@ -146,6 +147,7 @@ class Mapper {
 
   const std::unique_ptr<Tracker> tracker_;
   TrackingResult tracked_;
+  FrameRectifier rectifier_;  // maps keep images of one moment
   // Those used last, the latest first, by number in graph_.
   std::list<std::pair<int, std::unique_ptr<Reference>>> references_;
 };

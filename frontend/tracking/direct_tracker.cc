@@ -89,18 +89,52 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
   return reference;
 }
 
+void DirectTracker::MoveReference(const PreparedFrame& frame,
+                                  const Rigid3d& reference_from_stamp,
+                                  Reference* reference) const {
+  FrameView& view = dynamic_cast<DirectReference&>(*reference).view;
+  view.timing = frame.Timing();
+  view.reference_from_stamp = reference_from_stamp;
+  view.id = ++last_id_;  // costs select the points again
+}
+
+std::optional<Rigid3d> DirectTracker::AlignCoarsely(
+    const PreparedFrame& prev, const PreparedFrame& cur,
+    const Rigid3d& cur_from_prev_start) {
+  if (!estimators_.coarse.has_value()) return std::nullopt;
+  FrameView view = ViewFrame(prev, prev.Derived<SmoothPyramid>().levels,
+                             images_.camera, images_.depth.noise);
+  Estimate(view, cur, cur_from_prev_start,
+           PriorOf(options_, cur_from_prev_start), nullptr,
+           &*estimators_.coarse, &start_);
+  if (!HasMotion(start_)) return std::nullopt;
+  return start_.cur_from_prev;
+}
+
 void DirectTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
   MotionEstimate* const estimate = &tracked->estimate;
-  Estimate(reference, frame, guess.cur_from_ref, PriorOf(options_, guess),
+  Estimate(*reference.images(), frame, guess.cur_from_ref, PriorOf(options_, guess),
            nullptr, &estimators_.leading, estimate);
   if (estimate->num_used > 0) {
-    Estimate(reference, frame, Rigid3d(estimate->cur_from_prev),
+    Estimate(*reference.images(), frame, Rigid3d(estimate->cur_from_prev),
              PriorOf(options_, guess), nullptr, &estimators_.refining,
              estimate);
   }
+  if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
+  Judge(reference, frame, /*is_alone=*/true, tracked);
+}
+
+void DirectTracker::TrackAgain(const Reference& reference,
+                               const PreparedFrame& frame,
+                               const TrackingGuess& guess,
+                               TrackingResult* tracked) {
+  tracked->Begin(TrackingSource::kDirect);
+  Estimate(*reference.images(), frame, guess.cur_from_ref,
+           PriorOf(options_, guess), nullptr, &estimators_.refining,
+           &tracked->estimate);
   if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
   Judge(reference, frame, /*is_alone=*/true, tracked);
 }
@@ -110,7 +144,7 @@ void DirectTracker::RefineWithMatches(const Reference& reference,
                                       const TrackingResult& by_features,
                                       TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
-  Estimate(reference, frame, by_features.estimate.cur_from_prev,
+  Estimate(*reference.images(), frame, by_features.estimate.cur_from_prev,
            by_features.prior, &by_features, &estimators_.refining,
            &tracked->estimate);
   Judge(reference, frame, /*is_alone=*/false, tracked);
@@ -132,7 +166,7 @@ void DirectTracker::FindTwist(const Reference& reference,
       break;
     }
     seen.twist = twist;
-    Estimate(reference, seen, Rigid3d(estimate->cur_from_prev),
+    Estimate(*reference.images(), seen, Rigid3d(estimate->cur_from_prev),
              PriorOf(options_, guess), nullptr, &estimators_.refining,
              estimate);
   }
@@ -147,13 +181,13 @@ Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
                                  const TrackingGuess& guess) {
   if (!estimators_.coarse.has_value()) return guess.cur_from_ref;
-  Estimate(reference, frame, guess.cur_from_ref, PriorOf(options_, guess),
+  Estimate(*reference.images(), frame, guess.cur_from_ref, PriorOf(options_, guess),
            nullptr, &*estimators_.coarse, &start_);
   return HasMotion(start_) ? start_.cur_from_prev : guess.cur_from_ref;
 }
 
-void DirectTracker::Estimate(const Reference& reference,
-                             const PreparedFrame& frame, const Rigid3d& start,
+void DirectTracker::Estimate(const FrameView& prev, const PreparedFrame& frame,
+                             const Rigid3d& start,
                              const MotionPrior& prior,
                              const TrackingResult* by_features,
                              Estimator* estimator,
@@ -171,7 +205,7 @@ void DirectTracker::Estimate(const Reference& reference,
     if (are_alike && !by_features->aligns_depth) view.depth = {};
   }
   pair.prior = &prior;
-  pair.prev = reference.images();
+  pair.prev = &prev;
   pair.cur = &view;
   // Near the result the finest level is enough.
   pair.num_levels = estimator == &estimators_.refining ? 1 : 0;

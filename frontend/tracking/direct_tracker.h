@@ -35,8 +35,16 @@ class DirectTracker final : public Tracker {
                                            const Reference* last,
                                            const TrackingResult* tracked,
                                            std::string* why_not) override;
+  void MoveReference(const PreparedFrame& frame,
+                     const Rigid3d& reference_from_stamp,
+                     Reference* reference) const override;
+  std::optional<Rigid3d> AlignCoarsely(
+      const PreparedFrame& prev, const PreparedFrame& cur,
+      const Rigid3d& cur_from_prev_start) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
+  void TrackAgain(const Reference& reference, const PreparedFrame& frame,
+                  const TrackingGuess& guess, TrackingResult* tracked) override;
   // Estimates the motion from matches and pixels together, without pixels where
   // features contradict the motion, from the motion and prior of the matches.
   void RefineWithMatches(const Reference& reference, const PreparedFrame& frame,
@@ -50,8 +58,7 @@ class DirectTracker final : public Tracker {
 
  private:
   // `by_features`: their matches are used as well; null: only pixels.
-  void Estimate(const Reference& reference, const PreparedFrame& frame,
-                const Rigid3d& start, const MotionPrior& prior,
+  void Estimate(const FrameView& prev, const PreparedFrame& frame, const Rigid3d& start, const MotionPrior& prior,
                 const TrackingResult* by_features, Estimator* estimator,
                 MotionEstimate* estimate) const;
   // Estimates the velocity from the motion, then the motion again with it.
@@ -65,7 +72,7 @@ class DirectTracker final : public Tracker {
   DirectEstimators estimators_;
   MotionEstimate start_;
   TrackerOptions options_;
-  uint64_t last_id_ = 0;  // of references
+  mutable uint64_t last_id_ = 0;  // of references
 };
 
 }  // namespace rgbd_pose

@@ -93,9 +93,16 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
                                             std::move(features), validation);
 }
 
+void FeatureTracker::MoveReference(const PreparedFrame& frame,
+                                   const Rigid3d& reference_from_stamp,
+                                   Reference* reference) const {
+  frontend_->ObserveAgain(
+      frame, reference_from_stamp,
+      dynamic_cast<FeatureReference&>(*reference).features.get());
+}
+
 void FeatureTracker::Track(const Reference& reference,
                            const PreparedFrame& frame,
-                           const Rigid3d& cur_from_ref_start,
                            const TrackingGuess& guess,
                            TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
@@ -114,13 +121,39 @@ void FeatureTracker::Track(const Reference& reference,
       FindTwist(*ours.features, seen, *guess.velocity, tracked);
     }
   };
-  track(frame, cur_from_ref_start, guess.cur_from_ref);
+  track(frame, guess.search_at.value_or(guess.cur_from_ref),
+        guess.cur_from_ref);
   // With a wrong velocity, few features were where they were searched for.
   if (guess.velocity != nullptr && tracked->estimate.ok() &&
       ShareOf(ours, *tracked) < kFewFound) {
     const Rigid3d found = tracked->estimate.cur_from_prev;
     track(frame.WithTwist(tracked->twist), found, found);
   }
+  Complete(ours, tracked);
+}
+
+void FeatureTracker::TrackAgain(const Reference& reference,
+                                const PreparedFrame& frame,
+                                const TrackingGuess& guess,
+                                TrackingResult* tracked) {
+  const auto& ours = dynamic_cast<const FeatureReference&>(reference);
+  for (FeatureMatches* part : {&tracked->matches, &tracked->on_probation}) {
+    const FeatureMatches before = *part;
+    part->Clear();
+    for (size_t i = 0; i < before.features.size(); ++i) {
+      part->Add(*ours.features, before.features[i], before.matches[i].cur);
+    }
+  }
+  Estimate(guess.cur_from_ref, tracked);
+  ChooseMotion(tracked);
+  if (guess.velocity != nullptr) {
+    FindTwist(*ours.features, frame, *guess.velocity, tracked);
+  }
+  Complete(ours, tracked);
+}
+
+void FeatureTracker::Complete(const FeatureReference& ours,
+                              TrackingResult* tracked) const {
   tracked->covariance_factor =
       CovarianceInflation(tracked->matches.matches, tracked->estimate);
   tracked->estimate.covariance *= tracked->covariance_factor;

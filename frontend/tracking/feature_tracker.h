@@ -42,14 +42,13 @@ class FeatureTracker final : public Tracker {
                                            const Reference* last,
                                            const TrackingResult* tracked,
                                            std::string* why_not) override;
+  void MoveReference(const PreparedFrame& frame,
+                     const Rigid3d& reference_from_stamp,
+                     Reference* reference) const override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const TrackingGuess& guess, TrackingResult* tracked) override {
-    Track(reference, frame, guess.cur_from_ref, guess, tracked);
-  }
-  // Searches for features at another motion; the solver starts at the guess.
-  void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_start, const TrackingGuess& guess,
-             TrackingResult* tracked);
+             const TrackingGuess& guess, TrackingResult* tracked) override;
+  void TrackAgain(const Reference& reference, const PreparedFrame& frame,
+                  const TrackingGuess& guess, TrackingResult* tracked) override;
   void OnAccepted(Reference* reference, TrackingResult* tracked) override;
   const FrontendOptions& images() const override {
     return frontend_->options();
@@ -64,6 +63,9 @@ class FeatureTracker final : public Tracker {
   // Finds the velocity, and the motion again from features corrected with it.
   void FindTwist(const FeatureSet& features, const Frame& frame,
                  const VelocityPrior& velocity, TrackingResult* tracked);
+  // Sets what follows from the estimate.
+  void Complete(const FeatureReference& reference,
+                TrackingResult* tracked) const;
   // Sets status and reason from the estimate.
   void Judge(TrackingResult* tracked) const;
 

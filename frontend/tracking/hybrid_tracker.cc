@@ -70,6 +70,18 @@ std::unique_ptr<Reference> HybridTracker::MakeReference(
   return reference;
 }
 
+void HybridTracker::MoveReference(const PreparedFrame& frame,
+                                  const Rigid3d& reference_from_stamp,
+                                  Reference* reference) const {
+  auto& ours = dynamic_cast<HybridReference&>(*reference);
+  if (ours.features != nullptr) {
+    features_->MoveReference(frame, reference_from_stamp, ours.features.get());
+  }
+  if (ours.direct != nullptr) {
+    direct_->MoveReference(frame, reference_from_stamp, ours.direct.get());
+  }
+}
+
 void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {
@@ -81,14 +93,36 @@ void HybridTracker::Track(const Reference& reference,
     tracked->reason = "the reference has no features";
   } else {
     double start_ms = 0.0;
-    Rigid3d start = guess.cur_from_ref;
-    if (ours.direct != nullptr) {
+    TrackingGuess aligned = guess;
+    if (ours.direct != nullptr && !guess.search_at.has_value()) {
       const StageTimer timer(&start_ms);
-      start = direct_->FindStart(*ours.direct, frame, guess);
+      aligned.search_at = direct_->FindStart(*ours.direct, frame, guess);
     }
-    features_->Track(*ours.features, frame, start, guess, tracked);
+    features_->Track(*ours.features, frame, aligned, tracked);
     tracked->match_ms += start_ms;
   }
+  AddPixels(reference, frame, guess, tracked);
+}
+
+void HybridTracker::TrackAgain(const Reference& reference,
+                               const PreparedFrame& frame,
+                               const TrackingGuess& guess,
+                               TrackingResult* tracked) {
+  const auto& ours = dynamic_cast<const HybridReference&>(reference);
+  if (tracked->source == TrackingSource::kDirect) {
+    direct_->TrackAgain(*ours.direct, frame, guess, tracked);
+    return;
+  }
+  tracked->source = TrackingSource::kFeatures;
+  features_->TrackAgain(*ours.features, frame, guess, tracked);
+  AddPixels(reference, frame, guess, tracked);
+}
+
+void HybridTracker::AddPixels(const Reference& reference,
+                              const PreparedFrame& frame,
+                              const TrackingGuess& guess,
+                              TrackingResult* tracked) {
+  const auto& ours = dynamic_cast<const HybridReference&>(reference);
   if (!refines_ || ours.direct == nullptr) return;
   const bool is_clear =
       tracked->status == TrackingStatus::kOk || tracked->is_ambiguous;

@@ -27,14 +27,28 @@ class HybridTracker final : public Tracker {
                                            const Reference* last,
                                            const TrackingResult* tracked,
                                            std::string* why_not) override;
+  void MoveReference(const PreparedFrame& frame,
+                     const Rigid3d& reference_from_stamp,
+                     Reference* reference) const override;
+  std::optional<Rigid3d> AlignCoarsely(
+      const PreparedFrame& prev, const PreparedFrame& cur,
+      const Rigid3d& cur_from_prev_start) override {
+    return direct_->AlignCoarsely(prev, cur, cur_from_prev_start);
+  }
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
+  void TrackAgain(const Reference& reference, const PreparedFrame& frame,
+                  const TrackingGuess& guess, TrackingResult* tracked) override;
   void Refine(const Reference& reference, const PreparedFrame& frame,
               TrackingResult* tracked) override;
   void OnAccepted(Reference* reference, TrackingResult* tracked) override;
   const FrontendOptions& images() const override { return features_->images(); }
 
  private:
+  // Lets pixels refine or replace the motion of the features in `tracked`.
+  void AddPixels(const Reference& features_and_direct,
+                 const PreparedFrame& frame, const TrackingGuess& guess,
+                 TrackingResult* tracked);
   // Refines the motion of the features by pixels. Returns false, and changes
   // only time and iterations, if pixels contradict it or determine none.
   bool RefineByPixels(const Reference& direct, const PreparedFrame& frame,

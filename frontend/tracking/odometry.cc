@@ -146,8 +146,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
              result.world_from_cam,
              frame.WithTwist(twist_),
              {},
+             {},
              twist_covariance_ + timing_covariance_};
-    last_covariance_ = covariance_;
   }
   return result;
 }
@@ -198,18 +198,9 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
 bool Odometry::Follow(const PreparedFrame& measured,
                       const std::optional<Prediction>& prediction,
                       TrackedFrame* result) {
-  // If the last frame is to become the reference, the pose since then probably
-  // replaces this one. Until it is refined, IsSlow and the velocity that
-  // rectifies the last frame then rely on features alone.
-  const bool is_provisional = wants_reference_ && last_.has_value();
-  const PreparedFrame* frame =
-      Look(measured, prediction, is_provisional, result);
-  const bool is_trusted = IsTrusted(frame, *result);
-  // Pixels alone yield a velocity that is half a frame late. Tracking once more
-  // against the last frame corrects this.
-  bool goes_on = wants_reference_ && is_trusted && IsSlow() &&
-                 result->source != TrackingSource::kDirect;
-  if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
+  aligned_ = AlignToLast(measured, prediction);
+  const PreparedFrame* frame = Look(measured, prediction, result);
+  if (!is_lost_ && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
   if (frame != nullptr && attempts_.kept().needs_refinement) {
@@ -232,41 +223,64 @@ bool Odometry::Follow(const PreparedFrame& measured,
         TimingCovariance(measured, TwistOf(cur_from_prev_, interval_));
   }
   TakeMotion(result);
-  goes_on = goes_on && GoOnFromLast(result);
   if (has_shutter_) shutter_tracking_.Accept();
   if (earlier_segment_.has_value()) ReturnToEarlierSegment(*frame, result);
-  if (!goes_on) Accept(*frame, result);
+  Accept(*frame, result);
   return true;
 }
 
-// Tracks from the last pose first. A constant velocity is only the second
-// guess: as the first one it can lock onto its own false motion.
+std::optional<Rigid3d> Odometry::AlignToLast(
+    const PreparedFrame& frame, const std::optional<Prediction>& prediction) {
+  if (is_lost_) return std::nullopt;
+  const Keyframe* last = nullptr;
+  if (last_.has_value()) {
+    last = &*last_;
+  } else if (reference_->id == num_frames_ - 2) {
+    last = reference_;
+  }
+  if (last == nullptr) return std::nullopt;
+  PreparedFrame seen = frame;
+  seen.twist = last->frame.twist;
+  return tracker_->AlignCoarsely(
+      last->frame, seen,
+      prediction.has_value() ? prediction->cur_from_prev : cur_from_prev_);
+}
+
+// Tracks from where coarse images say that the camera is. Where they do not say
+// it, from the last pose, and only then from a constant velocity, which can lock
+// onto its own false motion.
 const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                                     const std::optional<Prediction>& prediction,
-                                    bool is_provisional, TrackedFrame* result) {
+                                    TrackedFrame* result) {
   Rigid3d first = cur_from_ref_;
   Rigid3d second = cur_from_prev_ * cur_from_ref_;
-  if (options_.predict_velocity) std::swap(first, second);
+  std::optional<Rigid3d> aligned;
+  if (aligned_.has_value()) aligned = *aligned_ * cur_from_ref_;
   const auto track = [&](const PreparedFrame& frame,
-                         const VelocityPrior* velocity, const Rigid3d* found) {
+                         const VelocityPrior* velocity) {
     const auto from = [&](const Rigid3d& cur_from_ref) {
       TrackingGuess guess = GuessOf(cur_from_ref);
       guess.velocity = velocity;
-      guess.leaves_refinement = is_provisional;
+      guess.leaves_refinement = true;
       return guess;
     };
-    const bool is_certain = prediction.has_value() && prediction->given;
-    if (found != nullptr && !is_certain &&
-        attempts_.Try(frame, *reference_, from(*found), result)) {
-      return true;
-    }
     if (prediction.has_value()) {
       TrackingGuess guess = from(prediction->cur_from_ref);
-      if (is_certain) guess.covariance = &prediction->covariance;
+      if (prediction->given != nullptr) {
+        guess.covariance = &prediction->covariance;
+      }
+      guess.search_at = aligned;
       if (attempts_.Try(frame, *reference_, guess, result)) return true;
     }
+    TrackingGuess start = from(first);
+    TrackingGuess other = from(second);
+    if (aligned.has_value()) {
+      other = start;
+      start = from(*aligned);
+      start.search_at = aligned;
+    }
     return attempts_.TryInTurn(
-        frame, *reference_, from(first), from(second),
+        frame, *reference_, start, other,
         [&](Rigid3d* cur_from_ref) {
           const StageTimer timer(&result->relocalise_ms);
           return relocaliser_.FindIn(frame, reference_, cur_from_ref);
@@ -277,8 +291,16 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     // A frame without a shutter among frames with one does not determine a
     // velocity, and the known velocity is older than this frame.
     shutter_tracking_.Forget();
-    return track(measured, nullptr, nullptr) ? &measured : nullptr;
+    return track(measured, nullptr) ? &measured : nullptr;
   }
+  const auto track_again = [&](const PreparedFrame& frame,
+                               const VelocityPrior& velocity,
+                               const Rigid3d& cur_from_ref) {
+    TrackingGuess guess = GuessOf(cur_from_ref);
+    guess.velocity = &velocity;
+    guess.leaves_refinement = true;
+    return attempts_.TryAgain(frame, *reference_, guess, result);
+  };
   std::optional<Twist> twist;
   if (prediction.has_value() && interval_ > 0.0) {
     twist = TwistOf(prediction->cur_from_prev, interval_);
@@ -286,7 +308,8 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   std::optional<Rigid3d> prev_from_ref;
   if (!is_lost_) prev_from_ref = cur_from_ref_;
   return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
-                                  reference_, attempts_.kept(), track);
+                                  reference_, attempts_.kept(), track,
+                                  track_again);
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {
@@ -305,7 +328,6 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   is_unconnected_ = false;
   tracker_->OnAccepted(reference_->reference.get(), attempts_.mutable_kept());
-  wants_reference_ = false;
   if (!NeedsNewReference()) return;
   const Rigid3d world_from_cam = WorldFromCam();
   OdometryKeyframe* const earlier =
@@ -320,9 +342,7 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
     TakeMotion(result);
     return;
   }
-  // The next frame determines how the camera moved during this one.
-  wants_reference_ = has_shutter_ && twist_.has_value();
-  if (!wants_reference_) TakeReference(frame, world_from_cam, result);
+  TakeReference(frame, world_from_cam, result);
 }
 
 bool Odometry::NeedsNewReference() const {
@@ -339,17 +359,17 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   const bool is_lost = result->status == TrackingStatus::kLost;
   const bool was_tracked = reference_ != nullptr && !is_lost;
   std::string why_not;
-  const PreparedFrame seen =
-      has_shutter_ ? shutter_tracking_.AtOneMoment(frame) : frame;
+  MotionMatrix covariance = timing_covariance_;
+  if (frame.twist.has_value()) covariance += twist_covariance_;
   OdometryKeyframe* const added = AddKeyframe(
-      {result->index, segment_, world_from_cam, seen, {}, timing_covariance_},
+      {result->index, segment_, world_from_cam, frame, {}, {}, covariance},
       was_tracked ? reference_->reference.get() : nullptr, nullptr, &why_not);
   if (added == nullptr) {
     if (is_lost) result->reason = why_not;
     return false;
   }
   reference_ = added;
-  if (has_shutter_) shutter_tracking_.AddReference(frame, *added);
+  if (has_shutter_) shutter_tracking_.AddReference(*added);
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;
@@ -364,7 +384,6 @@ OdometryKeyframe* Odometry::AddKeyframe(Keyframe keyframe,
       keyframe.frame, last, last != nullptr ? &attempts_.kept() : nullptr,
       why_not);
   if (reference == nullptr) return nullptr;
-  keyframe.frame.depth_delay = 0.0;
   keyframe.frame.color.release();
   return keyframes_.Add({std::move(keyframe), std::move(reference)}, in_use);
 }

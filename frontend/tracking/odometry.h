@@ -147,23 +147,22 @@ class Odometry {
   bool Follow(const PreparedFrame& frame,
               const std::optional<Prediction>& prediction,
               TrackedFrame* result);
+  // Returns the motion since the last frame by coarse images; nothing if they do
+  // not determine it.
+  std::optional<Rigid3d> AlignToLast(
+      const PreparedFrame& frame, const std::optional<Prediction>& prediction);
   // Tracks a frame against reference_. Returns it as tracked, or null if lost.
-  // `is_provisional`: leave the refinement to Follow.
+  // The refinement is left to Follow.
   const PreparedFrame* Look(const PreparedFrame& frame,
                             const std::optional<Prediction>& prediction,
-                            bool is_provisional, TrackedFrame* result);
+                            TrackedFrame* result);
   bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result) const;
-  // Whether the camera has moved little since the last frame.
-  bool IsSlow() const;
   // Makes the last frame a keyframe and tracks the frame against it. Returns
   // `found`, the result of Look, unless the new result is better.
   const PreparedFrame* LookFromLast(const PreparedFrame& frame,
                                     const std::optional<Prediction>& prediction,
                                     const PreparedFrame* found,
                                     TrackedFrame* result);
-  // Makes the last frame the reference of the next frames. Its velocity is well
-  // known after the current frame has been tracked.
-  bool GoOnFromLast(TrackedFrame* result);
   // Returns false and changes nothing without a suitable last frame.
   bool MakeLastReference(TrackedFrame* result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
@@ -212,8 +211,7 @@ class Odometry {
   StampJitter stamp_jitter_;                        // of depth
   // The last frame, to become a keyframe, if it was tracked and is none.
   std::optional<Keyframe> last_;
-  MotionMatrix last_covariance_ = MotionMatrix::Zero();  // since its reference
-  bool wants_reference_ = false;  // the last frame should become a reference
+  std::optional<Rigid3d> aligned_;  // see AlignToLast
   int segment_ = 0;
   int latest_segment_ = 0;
   // The end of the previous segment, as long as it is searched for.

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/util/stage_timer.h"
-#include "frontend/frame/depth_warper.h"
 #include "frontend/tracking/odometry.h"
 
 // If the reference does not yield the pose of a frame: track against the
@@ -24,41 +23,30 @@ bool Odometry::IsTrusted(const PreparedFrame* frame,
          (is_certain && !attempts_.kept().needs_new_keyframe);
 }
 
-// For a fast camera, tracking once more against the last frame pays off: with a
-// limit of 12 to 20 px, errors over one second are 10 % larger.
-bool Odometry::IsSlow() const {
-  constexpr double kSlowFlowPx = 8.0;  // from frame to frame, in a room
-  const Rigid3d moved = last_estimate().cur_from_prev * cur_from_ref_.Inverse();
-  return tracker_->images().camera.fx *
-             (moved.Angle() + kRoomInverseDepth * moved.translation.norm()) <
-         kSlowFlowPx;
-}
-
 const PreparedFrame* Odometry::LookFromLast(
     const PreparedFrame& measured, const std::optional<Prediction>& prediction,
     const PreparedFrame* found, TrackedFrame* result) {
   OdometryKeyframe* const reference = reference_;
   const Rigid3d cur_from_ref = cur_from_ref_;
   const MotionMatrix covariance = covariance_;
+  const ShutterTracking shutter_tracking = shutter_tracking_;
+  const TrackingResult kept = attempts_.kept();
   if (!MakeLastReference(result)) return found;
   TrackedFrame from_last = *result;
-  attempts_.SwapStashed();
-  ShutterTracking::Found before = shutter_tracking_.TakeFound();
   std::optional<Prediction> since;
   if (prediction.has_value()) {
     since = Predict(prediction->cur_from_prev, prediction->given);
   }
-  const PreparedFrame* const frame = Look(measured, since, false, &from_last);
+  const PreparedFrame* const frame = Look(measured, since, &from_last);
   result->iterations = from_last.iterations;
   result->match_ms = from_last.match_ms;
   result->solve_ms = from_last.solve_ms;
   result->relocalise_ms = from_last.relocalise_ms;
   const bool is_better =
       frame != nullptr &&
-      (found == nullptr ||
-       (from_last.status == TrackingStatus::kOk &&
-        (wants_reference_ || result->status != TrackingStatus::kOk ||
-         from_last.sigma < result->sigma)));
+      (found == nullptr || (from_last.status == TrackingStatus::kOk &&
+                            (result->status != TrackingStatus::kOk ||
+                             from_last.sigma < result->sigma)));
   if (is_better) {
     *result = from_last;
     return frame;
@@ -66,36 +54,20 @@ const PreparedFrame* Odometry::LookFromLast(
   reference_ = reference;
   cur_from_ref_ = cur_from_ref;
   covariance_ = covariance;
-  attempts_.SwapStashed();
-  shutter_tracking_.PutBack(std::move(before));
+  shutter_tracking_ = shutter_tracking;
+  attempts_.Restore(kept);
   return found;
-}
-
-bool Odometry::GoOnFromLast(TrackedFrame* result) {
-  Reference* const reference = reference_->reference.get();
-  const MotionMatrix covariance = last_covariance_ + covariance_;
-  if (!MakeLastReference(result)) return false;
-  tracker_->OnAccepted(reference, attempts_.mutable_kept());
-  cur_from_ref_ = cur_from_prev_;
-  covariance_ = covariance;
-  result->reference = reference_->id;
-  result->cur_from_reference = cur_from_ref_;
-  wants_reference_ = false;
-  is_unconnected_ = false;
-  return true;
 }
 
 bool Odometry::MakeLastReference(TrackedFrame* result) {
   if (!last_.has_value()) return false;
   const StageTimer timer(&result->reference_ms);
-  Keyframe keyframe = *last_;
-  keyframe.frame = shutter_tracking_.LastAtOneMoment(last_->frame);
   std::string why_not;
   OdometryKeyframe* const added =
-      AddKeyframe(keyframe, nullptr, reference_, &why_not);
+      AddKeyframe(*last_, nullptr, reference_, &why_not);
   if (added == nullptr) return false;
   reference_ = added;
-  shutter_tracking_.AddReference(last_->frame, *added);
+  shutter_tracking_.AddReference(*added);
   result->previous_is_reference = true;
   last_.reset();
   cur_from_ref_ = Rigid3d();
@@ -119,7 +91,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
       result->status != TrackingStatus::kOk) {
     return false;
   }
-  // What waits for a velocity is another reference.
+  // Another reference was waiting for a velocity.
   shutter_tracking_.HandleLost();
   twist_ = attempts_.kept().twist;
   if (twist_.has_value()) {
@@ -145,7 +117,6 @@ void Odometry::HandleLost(const PreparedFrame& frame,
   const Rigid3d moved_on =
       (is_lost_ ? Rigid3d() : cur_from_prev_) * cur_from_ref_;
   is_lost_ = true;
-  wants_reference_ = false;
   shutter_tracking_.HandleLost();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;

@@ -8,10 +8,8 @@
 namespace rgbd_pose {
 namespace {
 
-// A reference is rebuilt if the new velocity moves pixels by the first limit,
-// or by the second if it was made after the next frame had been tracked.
+// A reference is moved if the new velocity moves its pixels by this.
 constexpr double kSmallFlowPx = 0.2;
-constexpr double kSmallFlowPxOfLate = 1.0;
 
 // Rounds for the first two frames: each determines the velocity of the other.
 constexpr int kMaxRounds = 3;
@@ -32,15 +30,6 @@ Twist VelocityBetween(const std::optional<Twist>& before, double before_s,
   return share * after + (1.0 - share) * *before;
 }
 
-// Returns the pose of the camera for which a frame is resampled, relative to
-// the camera at the exposure of the middle row. This is the camera at the stamp
-// according to the velocity found with the pose of the frame.
-Rigid3d TargetFromMiddle(const Frame& frame) {
-  return frame.twist.value_or(Twist())
-      .MotionDuring(frame.color_shutter.offset)
-      .Inverse();
-}
-
 }  // namespace
 
 void ShutterTracking::HandleLost() {
@@ -53,12 +42,13 @@ const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,
     const std::optional<Twist>& first_guess, OdometryKeyframe* reference,
-    const TrackingResult& tracked, const Track& track) {
+    const TrackingResult& tracked, const Track& track,
+    const TrackAgain& track_again) {
   found_ = Found();
   const auto forget = [&] {
     Forget();
     found_.frame = frame.WithTwist(std::nullopt);
-    return track(*found_.frame, nullptr, nullptr) ? &*found_.frame : nullptr;
+    return track(*found_.frame, nullptr) ? &*found_.frame : nullptr;
   };
   if (!(interval > 0.0 && interval <= VelocityModel::kMaxAge) ||
       velocity_.IsOutdated(frame.timestamp)) {
@@ -67,7 +57,7 @@ const PreparedFrame* ShutterTracking::Follow(
   const double middle = frame.color_shutter.offset;
   found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  if (!track(*found_.frame, &prior, nullptr)) return nullptr;
+  if (!track(*found_.frame, &prior)) return nullptr;
   const auto look = [&] {
     if (tracked.twist.has_value()) {
       found_.frame = frame.WithTwist(tracked.twist);
@@ -78,10 +68,10 @@ const PreparedFrame* ShutterTracking::Follow(
   look();
   const int rounds = between_.has_value() ? 1 : kMaxRounds;
   for (int round = 0; round < rounds && found_.between.has_value(); ++round) {
-    if (!MendReference(*found_.between, interval, reference)) break;
+    if (!MoveReference(*found_.between, interval, reference)) break;
     prior = velocity_.Prior(prev_from_ref, interval, middle);
     const Rigid3d found = tracked.estimate.cur_from_prev;
-    if (!track(*found_.frame, &prior, &found)) return nullptr;
+    if (!track_again(*found_.frame, prior, found)) return nullptr;
     look();
     if (early_->is_free) {
       reference->timing_covariance =
@@ -112,7 +102,7 @@ void ShutterTracking::Accept() {
   interval_ = found_.interval;
 }
 
-bool ShutterTracking::MendReference(const Twist& since, double interval,
+bool ShutterTracking::MoveReference(const Twist& since, double interval,
                                     OdometryKeyframe* reference) {
   if (!early_.has_value()) return false;
   const Twist twist =
@@ -120,54 +110,39 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
   Frame& frame = early_->frame;
   velocity_.Correct(twist, frame.timestamp);
   if (LargestFlow(tracker_->images().camera, frame.Timing(twist),
-                  twist - frame.twist.value_or(Twist())) <
-      (early_->is_late ? kSmallFlowPxOfLate : kSmallFlowPx)) {
+                  twist - frame.twist.value_or(Twist())) < kSmallFlowPx) {
     return false;
   }
   frame.twist = twist;
+  const Rigid3d middle_from_stamp =
+      twist.MotionDuring(frame.color_shutter.offset);
   if (early_->is_free) {
-    early_->target_from_middle = TargetFromMiddle(frame);
-    velocity_.SetMiddle(early_->target_from_middle.Inverse());
+    early_->target_from_middle = middle_from_stamp.Inverse();
+    velocity_.SetMiddle(middle_from_stamp);
   }
-  const PreparedFrame moved = Rectified(frame, early_->target_from_middle);
-  std::string why_not;
-  auto mended = tracker_->MakeReference(moved, nullptr, nullptr, &why_not);
-  if (mended == nullptr) return false;
-  reference->reference = std::move(mended);
-  reference->frame = moved;
+  reference->frame.twist = twist;
+  reference->reference_from_stamp =
+      early_->target_from_middle * middle_from_stamp;
   reference->features.reset();
+  tracker_->MoveReference(reference->frame, reference->reference_from_stamp,
+                          reference->reference.get());
   return true;
 }
 
-PreparedFrame ShutterTracking::Rectified(Frame frame,
-                                         const Rigid3d& target_from_middle) {
-  frame.color.release();  // trackers do not use colours
-  return PreparedFrame(rectifier_.Rectify(frame, target_from_middle));
-}
-
-PreparedFrame ShutterTracking::AtOneMoment(const Frame& frame) {
-  return Rectified(frame, TargetFromMiddle(frame));
-}
-
-PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
-  if (!found_.between.has_value()) return AtOneMoment(last);
-  Frame frame = last;
-  frame.twist =
-      VelocityBetween(between_, interval_, *found_.between, found_.interval);
-  return Rectified(frame, TargetFromMiddle(last));
-}
-
-void ShutterTracking::AddReference(const Frame& frame,
-                                   const Keyframe& reference) {
+void ShutterTracking::AddReference(const Keyframe& reference) {
+  const Frame& frame = reference.frame;
   early_ = EarlyReference{frame,
-                          TargetFromMiddle(frame),
+                          frame.twist.value_or(Twist())
+                              .MotionDuring(frame.color_shutter.offset)
+                              .Inverse(),
                           /*is_free=*/!frame.twist.has_value(),
-                          /*is_late=*/found_.between.has_value(),
                           between_,
                           interval_,
                           reference.timing_covariance};
-  early_->frame.color.release();
-  early_->frame.twist = reference.frame.twist;
+  for (cv::Mat* image :
+       {&early_->frame.gray, &early_->frame.depth, &early_->frame.color}) {
+    image->release();
+  }
 }
 
 }  // namespace rgbd_pose

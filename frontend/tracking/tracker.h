@@ -76,8 +76,11 @@ struct TrackingGuess {
   TrackingGuess(const Rigid3d& motion, bool aligns)
       : cur_from_ref(motion), aligns_depth(aligns) {}
 
-  // The start of the search and the mean of priors.
+  // The start of the solver and the mean of priors.
   Rigid3d cur_from_ref;
+
+  // Where features are searched for, if coarse images have been aligned already.
+  std::optional<Rigid3d> search_at;
 
   // Becomes the prior of costs that have one; null: unknown.
   const MotionMatrix* covariance = nullptr;
@@ -191,9 +194,30 @@ class Tracker {
       const PreparedFrame& frame, const Reference* last,
       const TrackingResult* tracked, std::string* why_not) = 0;
 
+  // Moves what a reference keeps of its frame: the velocity of the frame is known
+  // better now. `reference_from_stamp`: see FrameView.
+  virtual void MoveReference(const PreparedFrame& frame,
+                             const Rigid3d& reference_from_stamp,
+                             Reference* reference) const = 0;
+
+  // Aligns coarse images of two frames in a row. Returns nothing if they do not
+  // determine the motion. No verdict on details: it may be some pixels off.
+  virtual std::optional<Rigid3d> AlignCoarsely(
+      const PreparedFrame& /*prev*/, const PreparedFrame& /*cur*/,
+      const Rigid3d& /*cur_from_prev_start*/) {
+    return std::nullopt;
+  }
+
   // Fills `tracked` (made for the camera of images()) and reuses its memory.
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
                      const TrackingGuess& guess, TrackingResult* tracked) = 0;
+
+  // Corrects `tracked`, the result of Track, after the reference has moved. What
+  // was found in the frame, with the velocity of `frame`, is not searched again.
+  virtual void TrackAgain(const Reference& reference,
+                          const PreparedFrame& frame,
+                          const TrackingGuess& guess,
+                          TrackingResult* tracked) = 0;
 
   // Refines a motion if Track has left that (see needs_refinement), with the
   // velocity found with it. The status stays as it is.

@@ -7,6 +7,20 @@ bool TrackingAttempts::Try(const PreparedFrame& frame,
                            const TrackingGuess& guess, TrackedFrame* result) {
   tracked_.is_partial = false;
   tracker_->Track(*keyframe.reference, frame, guess, &tracked_);
+  return Report(keyframe, result);
+}
+
+bool TrackingAttempts::TryAgain(const PreparedFrame& frame,
+                                const OdometryKeyframe& keyframe,
+                                const TrackingGuess& guess,
+                                TrackedFrame* result) {
+  result->match_ms -= tracked_.match_ms;
+  tracker_->TrackAgain(*keyframe.reference, frame, guess, &tracked_);
+  return Report(keyframe, result);
+}
+
+bool TrackingAttempts::Report(const OdometryKeyframe& keyframe,
+                              TrackedFrame* result) const {
   const MotionEstimate& estimate = tracked_.estimate;
   result->status = tracked_.status;
   result->reason = tracked_.reason;

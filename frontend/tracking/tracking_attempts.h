@@ -21,12 +21,18 @@ class TrackingAttempts {
   explicit TrackingAttempts(Tracker* tracker)
       : tracker_(tracker),
         tracked_(tracker->images().camera),
-        other_(tracked_),
-        stashed_(tracked_) {}
+        other_(tracked_) {}
+
+  // Makes an earlier result count again.
+  void Restore(const TrackingResult& kept) { tracked_ = kept; }
 
   // Tracks against a keyframe from one guess; true if this yields a pose.
   bool Try(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
            const TrackingGuess& guess, TrackedFrame* result);
+
+  // Corrects the result that counts after the keyframe has moved.
+  bool TryAgain(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
+                const TrackingGuess& guess, TrackedFrame* result);
 
   // The same from several guesses until one leads to a good pose: the first,
   // the second and, unless the pose is ambiguous, a third from `find`.
@@ -47,18 +53,16 @@ class TrackingAttempts {
   void Refine(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
               TrackedFrame* result);
 
-  // Stores the result that counts during another attempt, and restores it.
-  void SwapStashed() { std::swap(tracked_, stashed_); }
-
   // The tracker's result of the attempt that counts.
   const TrackingResult& kept() const { return tracked_; }
   TrackingResult* mutable_kept() { return &tracked_; }
 
  private:
+  bool Report(const OdometryKeyframe& keyframe, TrackedFrame* result) const;
+
   Tracker* tracker_;
   TrackingResult tracked_;
-  TrackingResult other_;    // scratch result
-  TrackingResult stashed_;  // see SwapStashed
+  TrackingResult other_;  // scratch result
 };
 
 }  // namespace rgbd_pose
