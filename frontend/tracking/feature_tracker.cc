@@ -26,6 +26,11 @@ constexpr double kMaxRivalCells = 0.7;
 // more than 0.64.
 constexpr double kMinAgreeingViewOk = 0.45;
 
+// If a smaller share of a reference's features would be trusted, failures are
+// those of the image, such as blur, and not of something that moves: that covers
+// less of it, or it cannot be told from the scene.
+constexpr double kMinTrustedShare = 0.3;
+
 double ShareOf(const FeatureReference& reference,
                const TrackingResult& tracked) {
   return static_cast<double>(tracked.estimate.num_inliers) /
@@ -83,7 +88,9 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
   if (last != nullptr) {
     validation = FeatureValidation(
         *dynamic_cast<const FeatureReference&>(*last).features, *tracked,
-        frontend_->is_exhaustive(), *features, 2 * options_.min_inliers_ok);
+        frontend_->is_exhaustive(), *features,
+        std::max<size_t>(2 * options_.min_inliers_ok,
+                         kMinTrustedShare * static_cast<double>(count)));
   }
   if (count < static_cast<size_t>(options_.min_inliers)) {
     *why_not = "only " + std::to_string(count) + " features with depth";

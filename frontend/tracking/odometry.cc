@@ -139,6 +139,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
+  is_doubtful_ = result.status != TrackingStatus::kOk;
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
     last_ = {result.index,
@@ -203,6 +204,10 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (!is_lost_ && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
+  if (frame == nullptr && aligned_.has_value()) {
+    aligned_.reset();
+    frame = Look(measured, prediction, result);
+  }
   if (frame != nullptr && attempts_.kept().needs_refinement) {
     attempts_.Refine(*frame, *reference_, result);
     shutter_tracking_.Update(attempts_.kept());
@@ -231,7 +236,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
 
 std::optional<Rigid3d> Odometry::AlignToLast(
     const PreparedFrame& frame, const std::optional<Prediction>& prediction) {
-  if (is_lost_) return std::nullopt;
+  if (is_lost_ || is_doubtful_) return std::nullopt;
   const Keyframe* last = nullptr;
   if (last_.has_value()) {
     last = &*last_;
@@ -273,12 +278,13 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
       if (attempts_.Try(frame, *reference_, guess, result)) return true;
     }
     TrackingGuess start = from(first);
-    TrackingGuess other = from(second);
     if (aligned.has_value()) {
-      other = start;
-      start = from(*aligned);
       start.search_at = aligned;
+      start.is_tentative = true;
+      return attempts_.Try(frame, *reference_, start, result) &&
+             !attempts_.kept().is_partial;
     }
+    const TrackingGuess other = from(second);
     return attempts_.TryInTurn(
         frame, *reference_, start, other,
         [&](Rigid3d* cur_from_ref) {

@@ -223,6 +223,7 @@ class Odometry {
   std::optional<EarlierSegment> earlier_segment_;
   double usual_inflation_ = 4.0;  // 90 % quantile of the covariance_factor
   bool is_lost_ = false;
+  bool is_doubtful_ = false;     // the last frame was not ok
   bool is_unconnected_ = false;  // the last frame started a segment
   bool is_predicted_ = false;    // see TrackedFrame
 };

@@ -11,7 +11,7 @@ namespace {
 // A reference is moved if the new velocity moves its pixels by this.
 constexpr double kSmallFlowPx = 0.2;
 
-// Rounds for the first two frames: each determines the velocity of the other.
+// The velocities of the reference and of the next frame determine each other.
 constexpr int kMaxRounds = 3;
 
 // A hand moves more slowly; a wrong estimate may be faster.
@@ -66,8 +66,7 @@ const PreparedFrame* ShutterTracking::Follow(
     Update(tracked);
   };
   look();
-  const int rounds = between_.has_value() ? 1 : kMaxRounds;
-  for (int round = 0; round < rounds && found_.between.has_value(); ++round) {
+  for (int round = 0; round < kMaxRounds && found_.between.has_value(); ++round) {
     if (!MoveReference(*found_.between, interval, reference)) break;
     prior = velocity_.Prior(prev_from_ref, interval, middle);
     const Rigid3d found = tracked.estimate.cur_from_prev;
