@@ -107,7 +107,9 @@ std::optional<Rigid3d> DirectTracker::AlignCoarsely(
   Estimate(view, cur, cur_from_prev_start,
            PriorOf(options_, cur_from_prev_start), nullptr,
            &*estimators_.coarse, &start_);
-  if (!HasMotion(start_)) return std::nullopt;
+  // Blur lets fewer points agree, but two frames in a row are never far apart.
+  constexpr double kMinShare = 0.5;
+  if (!(start_.num_inliers >= kMinShare * start_.num_used)) return std::nullopt;
   return start_.cur_from_prev;
 }
 

@@ -139,7 +139,6 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
-  is_doubtful_ = result.status != TrackingStatus::kOk;
   last_.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
     last_ = {result.index,
@@ -154,6 +153,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
 }
 
 void Odometry::JudgeInflation(TrackedFrame* result) {
+  is_doubtful_ = attempts_.kept().is_ambiguous;
   // A failed attempt says nothing of the camera.
   if (result->status == TrackingStatus::kLost || result->reference < 0 ||
       result->source == TrackingSource::kDirect) {
@@ -162,6 +162,7 @@ void Odometry::JudgeInflation(TrackedFrame* result) {
   const double inflation = attempts_.kept().covariance_factor;
   if (result->status == TrackingStatus::kOk &&
       inflation > kMaxInflation * usual_inflation_) {
+    is_doubtful_ = true;
     result->status = TrackingStatus::kDegraded;
     result->reason =
         "neighbouring features err alike: something moves, or the shutter is "
@@ -200,12 +201,13 @@ bool Odometry::Follow(const PreparedFrame& measured,
                       const std::optional<Prediction>& prediction,
                       TrackedFrame* result) {
   aligned_ = AlignToLast(measured, prediction);
+  effort_ = aligned_.has_value() ? Effort::kQuick : Effort::kEverything;
   const PreparedFrame* frame = Look(measured, prediction, result);
   if (!is_lost_ && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
-  if (frame == nullptr && aligned_.has_value()) {
-    aligned_.reset();
+  while (frame == nullptr && effort_ != Effort::kEverything) {
+    effort_ = effort_ == Effort::kQuick ? Effort::kPixels : Effort::kEverything;
     frame = Look(measured, prediction, result);
   }
   if (frame != nullptr && attempts_.kept().needs_refinement) {
@@ -278,9 +280,9 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
       if (attempts_.Try(frame, *reference_, guess, result)) return true;
     }
     TrackingGuess start = from(first);
-    if (aligned.has_value()) {
+    if (effort_ != Effort::kEverything) {
       start.search_at = aligned;
-      start.is_tentative = true;
+      start.is_tentative = effort_ == Effort::kQuick;
       return attempts_.Try(frame, *reference_, start, result) &&
              !attempts_.kept().is_partial;
     }

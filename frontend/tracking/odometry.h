@@ -134,6 +134,10 @@ class Odometry {
     const MotionMatrix* given = nullptr;  // of cur_from_prev, if known
   };
 
+  // How hard a frame is tried: by features where coarse images have put it; by
+  // pixels as well, if these are too few; from other starts and by descriptors.
+  enum class Effort { kQuick, kPixels, kEverything };
+
   // Covariance of the motion due to the uncertain capture time at `twist`.
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
 
@@ -212,6 +216,7 @@ class Odometry {
   // The last frame, to become a keyframe, if it was tracked and is none.
   std::optional<Keyframe> last_;
   std::optional<Rigid3d> aligned_;  // see AlignToLast
+  Effort effort_ = Effort::kQuick;
   int segment_ = 0;
   int latest_segment_ = 0;
   // The end of the previous segment, as long as it is searched for.
@@ -223,7 +228,7 @@ class Odometry {
   std::optional<EarlierSegment> earlier_segment_;
   double usual_inflation_ = 4.0;  // 90 % quantile of the covariance_factor
   bool is_lost_ = false;
-  bool is_doubtful_ = false;     // the last frame was not ok
+  bool is_doubtful_ = false;     // something moved in the last frame
   bool is_unconnected_ = false;  // the last frame started a segment
   bool is_predicted_ = false;    // see TrackedFrame
 };
