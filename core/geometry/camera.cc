@@ -22,10 +22,33 @@ Vector2d Distort(const Lens<double>& lens, const Vector2d& point) {
   return distorted;
 }
 
+// The inverse of Distort by Newton's method, in three or four steps. Returns
+// false if it does not converge, as it may where the lens is hardly invertible.
+bool InvertByNewton(const Lens<double>& lens, const Vector2d& distorted,
+                    Vector2d* point) {
+  constexpr int kMaxSteps = 10;
+  *point = distorted;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    DistortedPoint<double> at;
+    lens.Distort(point->x(), point->y(), &at);
+    const double x = distorted.x() - at.x, y = distorted.y() - at.y;
+    const double determinant = at.x_x * at.y_y - at.x_y * at.x_y;
+    const Vector2d step((at.y_y * x - at.x_y * y) / determinant,
+                        (at.x_x * y - at.x_y * x) / determinant);
+    *point += step;
+    const double change = step.lpNorm<Eigen::Infinity>();
+    if (change <= kTolerance) return true;
+    if (!(change < 1.0)) return false;
+  }
+  return false;
+}
+
 // The inverse of Distort; arbitrary if there is none. Divides by the radial
 // factor, which contracts faster for large k1 than subtracting the shift.
 Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
-  Vector2d point = distorted;
+  Vector2d point;
+  if (InvertByNewton(lens, distorted, &point)) return point;
+  point = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double x = point.x();
     const double y = point.y();

@@ -168,8 +168,10 @@ class DirectCostOf final : public PackedCost<Type> {
     input_ = DirectInput();
     static const FrameView none{};
     input_.cur = pair.cur != nullptr ? pair.cur : &none;
+    prev_ = pair.prev;
     if (pair.prev == nullptr || pair.cur == nullptr) {
-      for (PackedColumns& points : points_) points.size = 0;
+      prev_ = nullptr;
+      for (LevelPoints& level : points_) level = {PackedColumns(), true};
       points_of_ = 0;
       return;
     }
@@ -181,22 +183,13 @@ class DirectCostOf final : public PackedCost<Type> {
                  "direct cost: the view's depth_noise: ");
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;
-    DirectOptions selection = options_;
-    // Coarser levels only lead to the finest one.
-    constexpr int kMaxCoarsePoints = 1000;
-    int& count = selection.max_points;
-    if (count == 0) count = Residual::kMaxPoints;
-    for (int level = 0; level < options_.num_levels; ++level) {
-      Residual::Points(*pair.prev, ImageLevel(*pair.prev, level), selection,
-                       &points_[level]);
-      count = std::min(count, kMaxCoarsePoints);
-    }
+    for (LevelPoints& level : points_) level.is_selected = false;
   }
 
   void Associate(const Rigid3d& cur_from_prev) override {
     MoveTo(cur_from_prev);
     if constexpr (Residual::kSeesBrightness) {
-      EstimateBrightness(points_[level_], &input_);
+      EstimateBrightness(PointsOf(level_), &input_);
     }
     LookUp();
   }
@@ -254,16 +247,37 @@ class DirectCostOf final : public PackedCost<Type> {
     return !is_there;
   }
 
+  // The points of a level are selected when they are needed for the first time.
+  const PackedColumns& PointsOf(int level) {
+    LevelPoints& points = points_[level];
+    if (points.is_selected) return points.columns;
+    // Coarser levels only lead to the finest one.
+    constexpr int kMaxCoarsePoints = 1000;
+    DirectOptions selection = options_;
+    int& count = selection.max_points;
+    if (count == 0) count = Residual::kMaxPoints;
+    if (level > 0) count = std::min(count, kMaxCoarsePoints);
+    Residual::Points(*prev_, ImageLevel(*prev_, level), selection,
+                     &points.columns);
+    points.is_selected = true;
+    return points.columns;
+  }
+
   void LookUp() {
-    const PackedColumns& points = points_[level_];
+    const PackedColumns& points = PointsOf(level_);
     PackedColumns* const seen = this->BeginBlocks(points.size);
     RunVectorised<LookUpKernel<Residual>>(input_, points, seen);
     this->EndBlocks();
   }
 
   DirectOptions options_;
-  std::vector<PackedColumns> points_;  // by level
-  uint64_t points_of_ = 0;             // id of the frame of points_
+  struct LevelPoints {
+    PackedColumns columns;
+    bool is_selected = true;  // of no frame there are none
+  };
+  const FrameView* prev_ = nullptr;  // of the bound pair
+  std::vector<LevelPoints> points_;  // by level
+  uint64_t points_of_ = 0;           // id of the frame of points_
   DirectInput input_;
   int level_ = 0;
   mutable PackedColumns noise_;  // see AddSpuriousInformation

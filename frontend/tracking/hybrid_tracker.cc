@@ -143,19 +143,22 @@ void HybridTracker::AddPixels(const Reference& reference,
     return;
   }
   tracked->aligns_depth = guess.aligns_depth;
-  tracked->needs_refinement = is_clear && guess.leaves_refinement;
-  if (tracked->needs_refinement) return;
-  const bool is_refined = RefineByPixels(*ours.direct, frame, tracked);
-  if (!is_clear) Confirm(*ours.direct, frame, guess, is_refined, tracked);
+  tracked->needs_refinement = true;
+  if (!guess.leaves_refinement) Refine(reference, frame, guess, tracked);
 }
 
 void HybridTracker::Refine(const Reference& reference,
                            const PreparedFrame& frame,
+                           const TrackingGuess& guess,
                            TrackingResult* tracked) {
   if (!tracked->needs_refinement) return;
-  RefineByPixels(*dynamic_cast<const HybridReference&>(reference).direct, frame,
-                 tracked);
   tracked->needs_refinement = false;
+  const Reference& direct =
+      *dynamic_cast<const HybridReference&>(reference).direct;
+  const bool is_refined = RefineByPixels(direct, frame, tracked);
+  if (tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
+    Confirm(direct, frame, guess, is_refined, tracked);
+  }
 }
 
 bool HybridTracker::RefineByPixels(const Reference& direct,

@@ -40,7 +40,7 @@ class HybridTracker final : public Tracker {
   void TrackAgain(const Reference& reference, const PreparedFrame& frame,
                   const TrackingGuess& guess, TrackingResult* tracked) override;
   void Refine(const Reference& reference, const PreparedFrame& frame,
-              TrackingResult* tracked) override;
+              const TrackingGuess& guess, TrackingResult* tracked) override;
   void OnAccepted(Reference* reference, TrackingResult* tracked) override;
   const FrontendOptions& images() const override { return features_->images(); }
 

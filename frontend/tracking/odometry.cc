@@ -211,7 +211,9 @@ bool Odometry::Follow(const PreparedFrame& measured,
     frame = Look(measured, prediction, result);
   }
   if (frame != nullptr && attempts_.kept().needs_refinement) {
-    attempts_.Refine(*frame, *reference_, result);
+    // Pixels that confirm features start from where these were searched for.
+    const Rigid3d start = aligned_.value_or(Rigid3d()) * cur_from_ref_;
+    attempts_.Refine(*frame, *reference_, GuessOf(start), result);
     shutter_tracking_.Update(attempts_.kept());
   }
   // A doubtful pose does not end the lost state.
@@ -268,7 +270,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     const auto from = [&](const Rigid3d& cur_from_ref) {
       TrackingGuess guess = GuessOf(cur_from_ref);
       guess.velocity = velocity;
-      guess.leaves_refinement = true;
+      guess.leaves_refinement = effort_ != Effort::kEverything;
       return guess;
     };
     if (prediction.has_value()) {

@@ -93,8 +93,8 @@ struct TrackingGuess {
   // The tracker may skip its slow methods (see TrackingResult::is_partial).
   bool is_tentative = false;
 
-  // The refinement of a pose that needs no confirmation may be left to
-  // Tracker::Refine, as it may not be needed (see needs_refinement).
+  // The refinement by pixels is left to Tracker::Refine, as the reference may
+  // move before or the pose may not be needed (see needs_refinement).
   bool leaves_refinement = false;
 
   // Whether depth and gray levels are of one moment: times are known, or the
@@ -220,9 +220,10 @@ class Tracker {
                           TrackingResult* tracked) = 0;
 
   // Refines a motion if Track has left that (see needs_refinement), with the
-  // velocity found with it. The status stays as it is.
+  // velocity found with it. A motion that was not ok may be confirmed.
   virtual void Refine(const Reference& /*reference*/,
                       const PreparedFrame& /*frame*/,
+                      const TrackingGuess& /*guess*/,
                       TrackingResult* /*tracked*/) {}
 
   // Called when the motion is accepted and tracking continues from it. The

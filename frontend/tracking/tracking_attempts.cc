@@ -37,14 +37,13 @@ bool TrackingAttempts::Report(const OdometryKeyframe& keyframe,
 
 void TrackingAttempts::Refine(const PreparedFrame& frame,
                               const OdometryKeyframe& keyframe,
+                              const TrackingGuess& guess,
                               TrackedFrame* result) {
-  const MotionEstimate& estimate = tracked_.estimate;
-  result->iterations -= estimate.iterations;
-  result->solve_ms -= estimate.solve_ms;
-  tracker_->Refine(*keyframe.reference, frame, &tracked_);
-  result->source = tracked_.source;
-  result->iterations += estimate.iterations;
-  result->solve_ms += estimate.solve_ms;
+  result->iterations -= tracked_.estimate.iterations;
+  result->match_ms -= tracked_.match_ms;
+  result->solve_ms -= tracked_.estimate.solve_ms;
+  tracker_->Refine(*keyframe.reference, frame, guess, &tracked_);
+  Report(keyframe, result);
 }
 
 bool TrackingAttempts::TryInTurn(const PreparedFrame& frame,

@@ -51,7 +51,7 @@ class TrackingAttempts {
 
   // Refines the pose that counts if its attempt has left that.
   void Refine(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
-              TrackedFrame* result);
+              const TrackingGuess& guess, TrackedFrame* result);
 
   // The tracker's result of the attempt that counts.
   const TrackingResult& kept() const { return tracked_; }
