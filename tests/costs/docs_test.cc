@@ -40,8 +40,8 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
-// The lines "| `name` | rows | independent rows |" of the page on costs, and the
-// sections "## `name`" of that on their formulas.
+// The lines "| `name` | rows | independent rows |" of the page on costs, and
+// the sections "## `name`" of that on their formulas.
 class CostsDocumentTest : public ::testing::Test {
  protected:
   void SetUp() override {
