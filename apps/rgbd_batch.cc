@@ -112,7 +112,7 @@ void CheckFlags() {
   }
 }
 
-// Values of the lists would replace those of the file in each run.
+// The values of the lists would replace those of the file in each run.
 void CheckSettings() {
   for (const TextLine& line : ReadTextTable(FLAGS_settings)) {
     std::string flag = SplitText(line.words[0], '=')[0];
@@ -157,8 +157,8 @@ void RefuseEarlierRuns(const std::vector<BatchRun>& plan,
 void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
             const std::string& program) {
   BatchPoolOptions options;
-  // A page per run would be too much; --settings may request it. A stopped run
-  // must not count as finished: the next call would not repeat it.
+  // There is no page per run by default; --settings may request it. A stopped
+  // run must not count as finished: the next call would not repeat it.
   options.command = {program, "--report=false", "--finish_on_signal=false"};
   if (!FLAGS_settings.empty()) {
     options.command.push_back("--flagfile=" +
@@ -172,7 +172,7 @@ void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
   options.on_end = [&](const BatchRun& run, const RunEnd& end, double seconds) {
     ++done;
     const bool is_ok = end.status == "ok";
-    // For successful runs, the bar is sufficient.
+    // The progress bar says enough about successful runs.
     if (!bar.visible() || !is_ok) {
       bar.PrintLine(
           Format("[%d/%d] ", done, total) + end.status +

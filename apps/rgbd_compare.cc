@@ -1,4 +1,5 @@
-// The experiments of the thesis' fourth chapter, which compare M-estimators.
+// Repeats the experiments of the thesis' fourth chapter, which compare
+// M-estimators.
 
 #include <gflags/gflags.h>
 

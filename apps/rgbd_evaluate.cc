@@ -78,7 +78,7 @@ std::vector<int> ParseFrames(const std::string& text) {
   return frames;
 }
 
-// The noise of the truth as its file says, unless flags say otherwise.
+// The noise of the truth is what its file says, unless flags say otherwise.
 TruthNoise NoiseOfTruth() {
   TruthNoise noise = ReadTruthNoise(FLAGS_groundtruth);
   const auto take = [&noise](double flag, double unit, double* sigma) {

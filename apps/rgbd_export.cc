@@ -12,7 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The default output is in the folder of the run. 0 threads: one per core.
+// The default output is in the folder of the run. 0 threads mean one per core.
 struct ExportSettings {
   std::string run, dataset, camera, to;
   ExportOptions options;

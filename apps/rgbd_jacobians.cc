@@ -92,7 +92,8 @@ bool PrintLine(const std::string& name, const std::string& part,
   return good;
 }
 
-// Whether a cost or a factor is to be checked; `other` is the other's flag.
+// Whether a cost or a factor is to be checked; `other` is the flag of the other
+// kind.
 bool IsWanted(const std::string& flag, const std::string& other,
               const std::string& name) {
   return flag == name || (flag.empty() && other.empty());
@@ -128,7 +129,7 @@ bool ReportCost() {
   return passed;
 }
 
-// Infinite if one is not finite.
+// The larger of two numbers, or infinity if one of them is not finite.
 double Larger(double a, double b) {
   return std::isfinite(a) && std::isfinite(b) ? std::max(a, b) : INFINITY;
 }
@@ -144,8 +145,8 @@ bool ReportFactor() {
   for (int done = 0; done < FLAGS_samples; done += kStatesEach) {
     CheckFactorOptions options;
     options.samples = std::min(kStatesEach, FLAGS_samples - done);
-    // Other numbers than the measurements have: with the same ones, a gravity
-    // would be along an axis of its pose, with rows of zeros.
+    // The states get other random numbers than the measurements: with the same
+    // ones, a gravity would be along an axis of its pose, with rows of zeros.
     options.seed = FLAGS_seed + 1 + done;
     const auto errors = ErrorsOfFactor(Factor::Sample(&random), options);
     if (worst.empty()) worst = errors;

@@ -1,5 +1,5 @@
-// Estimates a map of an RGB-D sequence and the camera path in it: as
-// rgbd_odometry, plus loop closure, saved maps and relocalisation.
+// Estimates a map of an RGB-D sequence and the camera path in it: what
+// rgbd_odometry does, plus loop closure, saved maps and relocalisation.
 
 #include <gflags/gflags.h>
 

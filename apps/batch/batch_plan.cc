@@ -92,7 +92,8 @@ void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
   }
 }
 
-// Hashes a file or everything in a folder of another kind: names, sizes, texts.
+// Hashes a file, or everything in a folder of another kind: names, sizes and
+// texts.
 void AddAllOf(const fs::path& recording, TextHash* hash) {
   std::error_code error;
   std::vector<fs::path> files;
@@ -106,7 +107,7 @@ void AddAllOf(const fs::path& recording, TextHash* hash) {
     hash->Add(file.lexically_relative(recording).string());
     const auto size = fs::file_size(file, error);
     hash->Add(error ? "none" : std::to_string(size));
-    // All but images and bags.
+    // The extensions of all files but images and bags.
     static const std::set<std::string> kTexts = {
         ".txt", ".json", ".log", ".csv", ".yaml", ".yml", ".freiburg"};
     if (kTexts.count(file.extension()) > 0) AddFile(file, hash);

@@ -18,8 +18,9 @@ namespace {
 
 constexpr int kCannotRun = 127;  // as in shells
 
-// Runs in the new process: only calls that are safe between fork and exec.
-// posix_spawn will not do: it cannot tie the child's life to its parent.
+// Runs in the new process, so only calls are used that are safe between fork
+// and exec. posix_spawn will not do, because it cannot tie the child's life to
+// its parent.
 [[noreturn]] void RunInChild(pid_t parent, char* const* arguments,
                              const char* folder) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -36,7 +37,8 @@ constexpr int kCannotRun = 127;  // as in shells
   _exit(kCannotRun);
 }
 
-// Short compared with a run, long compared with the cost of polling.
+// This is short compared with a run, and long compared with the cost of
+// polling.
 constexpr auto kLookEvery = std::chrono::milliseconds(10);
 
 struct Process {
@@ -93,7 +95,7 @@ pid_t StartProcess(std::vector<std::string> command,
 
 void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
               const BatchPoolOptions& options) {
-  // Where it is ignored, ended runs cannot be waited for.
+  // Where this signal is ignored, ended runs cannot be waited for.
   std::signal(SIGCHLD, SIG_DFL);
   std::vector<Process> processes;
   auto next = runs.begin();

@@ -89,7 +89,8 @@ using BatchSummary = std::vector<nlohmann::ordered_json>;
 BatchSummary Summarise(const std::vector<BatchRun>& runs,
                        const BatchFolder& folder);
 
-// For programs: CSV with a header and one row per run; a JSON array of objects.
+// For programs: CSV with a header and one row per run, or a JSON array of
+// objects.
 std::string FormatBatchCsv(const BatchSummary& summary);
 std::string FormatBatchJson(const BatchSummary& summary);
 

@@ -22,7 +22,7 @@ constexpr double kMaxAngle = 0.1;        // rad
 constexpr double kMaxTranslation = 0.1;  // m, along each axis
 constexpr unsigned kFirstSeed = 7000;    // different from the benchmarks' seeds
 
-// What each method leaves of the true motion.
+// The motion that is left between the estimate of each method and the truth.
 std::vector<Rigid3d> RunSeed(int seed, double outlier_share,
                              const std::vector<SweepMethod>& methods,
                              std::vector<Estimator>* estimators) {

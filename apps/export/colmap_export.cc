@@ -43,7 +43,8 @@ std::string FormatImages(const FinishedRun& run,
   return text;
 }
 
-// Points from depth, not from features: unknown errors, no tracks.
+// The points are from depth, not from features, so their errors are unknown and
+// they have no tracks.
 std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   std::string text = "# point, x y z, red green blue, error, track\n";
   int number = 0;
@@ -55,7 +56,8 @@ std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   return text;
 }
 
-// The same as points3D.bin, because some tools read long texts slowly.
+// Writes the same points as points3D.bin, because some tools read long texts
+// slowly.
 std::string PackPoints(const std::vector<ColoredPoint>& points) {
   std::string bytes;
   AppendLittleEndian(uint64_t{points.size()}, &bytes);

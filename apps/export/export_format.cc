@@ -31,7 +31,8 @@ cv::Mat InMillimetres(const Frame& frame) {
                    error.message() + ")");
 }
 
-// In an exported folder, the names of all its other files, one in a line.
+// The file in an exported folder that has the names of all its other files, one
+// in a line.
 constexpr char kContent[] = ".exported_files";
 
 // All files in a folder and below, relative to it.
@@ -99,7 +100,8 @@ OutputFolder::OutputFolder(const std::string& path, bool overwrite)
       replaced_dir_(path_.string() + ".replaced_by_export"),
       staging_(path_.string() + ".partial", "--output: " + path) {
   std::error_code error;
-  // Left by a killed export: without a new folder, the old one returns.
+  // A killed export leaves the old folder under this name: it returns unless
+  // there is a new one.
   fs::rename(replaced_dir_, path_, error);
   fs::remove_all(replaced_dir_, error);
   if (fs::exists(path_) && !fs::is_directory(path_)) {

@@ -115,7 +115,7 @@ ExportedViews WriteViewImages(const FinishedRun& run,
                               const std::filesystem::path& depth_folder = {});
 
 // Settings for fusing the views to a cloud or a mesh, with the depth noise that
-// tracking had. `camera`: of the recording. Throws InputError.
+// tracking had. `camera` is that of the recording. Throws InputError.
 template <typename Fusion>
 Fusion FusionOf(const RgbdCamera& camera, const FinishedRun& run,
                 const ExportOptions& options, Fusion fusion = {}) {

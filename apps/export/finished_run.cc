@@ -118,7 +118,7 @@ std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run) {
     throw InputError("the recording of the run, " + settings.dataset +
                      ", does not exist; give its location with --dataset");
   }
-  // Only the frames are needed.
+  // An export needs only the frames.
   settings.motion_guess.clear();
   settings.groundtruth = "none";
   return OpenSequence(settings, /*keep_color=*/true).source;

@@ -111,7 +111,8 @@ class McapWriter {
              RecordOf(kMcapStatistics,
                       Pack(messages_, number, uint32_t{number}, kNone, kNone,
                            chunks_, first_time_, last_time_, counts));
-    // Without summary offsets; the checksum of the summary is the last field.
+    // The footer is without summary offsets; the checksum of the summary is its
+    // last field.
     const std::string footer =
         RecordOf(kMcapFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
     file_.append(footer, 0, footer.size() - sizeof(uint32_t));
@@ -262,7 +263,8 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
                      "with --to=tum");
   }
   RequireWritable(options.output);
-  // Kept in memory because the cloud, which needs all frames, comes first.
+  // Images are kept in memory, because the cloud, which needs all frames, comes
+  // first.
   std::map<double, std::string> images;  // by time
   const ExportedViews views =
       ReadImages(run, options, [&](const Frame& frame, int view) {

@@ -46,7 +46,7 @@ nlohmann::json Transforms(const FinishedRun& run, const ExportedViews& images) {
       {"p1", camera.p1},
       {"p2", camera.p2},
       {"depth_unit_scale_factor", 0.001},
-      // Identity: the world is that of the trajectory.
+      // This is the identity, because the world is that of the trajectory.
       {"applied_transform", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
       {"ply_file_path", "points.ply"},
       {"frames", nlohmann::json::array()}};

@@ -39,7 +39,8 @@ std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
                 options.output.c_str());
 }
 
-// One line per pose, the upper rows of world_from_cam; times have a file.
+// Writes one line per pose, the upper rows of world_from_cam, and a file of
+// times.
 std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
   OutputFolder folder(options.output, options.overwrite);
   std::string poses, times;

@@ -11,7 +11,8 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// Of the length of a quaternion, as for TUM text, and of R R^T.
+// The largest error of the length of a quaternion, as for TUM text, and of R
+// R^T.
 constexpr double kMaxRotationError = 0.01;
 
 Rigid3d PoseFromRow(const NumberArray& row, size_t i,

@@ -58,7 +58,7 @@ pybind11::array ToArray(const pybind11::object& object,
 // The rigid motion of a 4 x 4 array. Throws InputError if it is invalid.
 Rigid3d RigidFromArray(const pybind11::object& object, const std::string& name);
 
-// A matrix as it lies in arrays: row by row.
+// A matrix that is stored row by row, as arrays are.
 using RowMajorMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -111,7 +111,8 @@ auto PropertiesOf(Class* type) {
 
 std::string PathFrom(const pybind11::object& path);
 
-// Tells users a remark, such as on a file, as a UserWarning; an empty one not.
+// Shows users a remark, for example on a file, as a UserWarning, unless it is
+// empty.
 void WarnUser(const std::string& remark);
 
 // A trajectory from the path of a TUM text file, or from a pair of timestamps

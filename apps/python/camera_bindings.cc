@@ -25,7 +25,7 @@ RgbdCamera Checked(const RgbdCamera& camera) {
     throw InputError("Camera: the depth scale must be a positive number");
   }
   for (const ShutterParameter& parameter : kShutterParameters) {
-    // NaN compares false.
+    // The negated condition also rejects NaN.
     if (!(std::abs(camera.*parameter.image.*parameter.value) <=
           parameter.most)) {
       throw InputError("Camera: " + std::string(parameter.name) +

@@ -180,19 +180,21 @@ std::vector<To> AtRows(const std::vector<From>& values,
   return result;
 }
 
-// From x, y, z in camera axes (m). z = 0 gives non-finite values and no match.
+// Makes an observation from x, y, z in camera axes (m). z = 0 gives non-finite
+// values and no match.
 Observation ObservePoint(const Camera& camera, const Eigen::Vector3d& point) {
   return {camera.fx * point.x() / point.z() + camera.cx,
           camera.fy * point.y() / point.z() + camera.cy, point.z()};
 }
 
-// From an image pixel u, v (px) and a depth (m), 0 if missing.
+// Makes an observation from an image pixel u, v (px) and a depth (m), 0 if
+// missing.
 Observation ObservePixel(const Camera& camera, const Eigen::Vector3d& pixel) {
   const Eigen::Vector2d ideal = camera.Undistort(pixel.head<2>());
   return {ideal.x(), ideal.y(), pixel.z()};
 }
 
-// Makes an observation from a row of three numbers.
+// A function that makes an observation from a row of three numbers.
 using ToObservation = decltype(&ObservePoint);
 
 // Matches and their row numbers in the given arrays.

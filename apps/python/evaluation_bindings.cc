@@ -55,7 +55,7 @@ EvaluationReport EvaluateObjects(const py::object& estimated,
 
 AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
                       double max_time_difference) {
-  // Not used here, but it must exceed the time difference.
+  // This value is not used here, but it must exceed the time difference.
   const double delta_seconds = 2.0 * max_time_difference + 1.0;
   const EvaluationReport report = EvaluateObjects(
       estimated, reference, {max_time_difference, delta_seconds});

@@ -105,7 +105,7 @@ class PickledBytes {
   size_t at_ = 0;
 };
 
-// Parts of several classes.
+// The following types are members of several classes.
 
 inline void EachField(PickledBytes* bytes, DepthNoiseModel& model) {
   (*bytes)(model.name, model.constant, model.quadratic, model.centre,
@@ -130,7 +130,7 @@ inline void EachField(PickledBytes* bytes, TrackedFrame& f) {
            f.track_ms, f.match_ms, f.solve_ms, f.reference_ms, f.relocalise_ms);
 }
 
-// For py::class_<T>::def.
+// What makes a class picklable; an argument for py::class_<T>::def.
 template <typename T>
 auto Pickled() {
   namespace py = pybind11;

@@ -30,7 +30,8 @@ class ReleasedGil {
   PyThreadState* state_;
 };
 
-// For long work without the GIL: Ctrl-C raises KeyboardInterrupt.
+// Call this during long work without the GIL, so that Ctrl-C raises
+// KeyboardInterrupt.
 inline void ThrowIfInterrupted() {
   const pybind11::gil_scoped_acquire gil;
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();

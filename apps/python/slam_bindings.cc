@@ -65,7 +65,8 @@ class SharedSlam : public SharedRun {
       : SharedRun(camera,
                   SequenceRun(settings.odometry, settings.slam, camera)) {}
 
-  // Throws InputError after the first frame, and for no map of this camera.
+  // Throws InputError after the first frame, and if there is no map of this
+  // camera.
   void Load(const std::string& folder, bool localise_only) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!run_.frames().empty() || is_finished_) {
@@ -75,7 +76,7 @@ class SharedSlam : public SharedRun {
     is_held_ = is_held_ || localise_only;
   }
 
-  // See SharedRun::Add. After Finish, throws InputError.
+  // See SharedRun::Add. Throws InputError after Finish.
   FrameInMap Track(Frame frame, std::optional<double> timestamp,
                    const Rigid3d* guess) {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// Rounded, so that the page stays small.
+// Rounds a number, so that the page stays small.
 json Rounded(double value, double step) {
   return std::isfinite(value) ? json(step * std::round(value / step)) : json();
 }
@@ -30,7 +30,7 @@ json Residuals(const CalibrationResult& result) {
   return rows;
 }
 
-// Texts that the summary has, too.
+// The texts that the page has in common with the summary.
 json WordsOf(const CalibrationResult& result) {
   json rows = json::array();
   for (const CalibratedParameter& parameter : result.parameters) {

@@ -46,7 +46,7 @@ json ReportThinning::Largest(const std::vector<double>& values,
   for (size_t i = 0; i < values.size(); i += every) {
     double largest = NAN;
     const size_t end = std::min(i + every, values.size());
-    // Skips NaN.
+    // fmax skips NaN.
     for (size_t k = i; k < end; ++k) largest = std::fmax(largest, values[k]);
     result.push_back(Rounded(largest, decimals));
   }

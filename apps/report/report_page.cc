@@ -32,7 +32,8 @@ std::string InlineData(const nlohmann::json& data) {
 std::string FillPage(
     std::string_view page,
     const std::vector<std::pair<std::string_view, std::string>>& parts) {
-  // In the order of the page: contents are not searched for placeholders.
+  // Placeholders are replaced in the order of the page, so that contents are
+  // not searched for placeholders.
   std::string filled;
   size_t done = 0;
   for (const auto& [place, content] : parts) {

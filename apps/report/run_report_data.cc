@@ -215,7 +215,8 @@ json RunReportData(const std::string& run_folder) {
                      file("trajectory.txt"), thinning);
   }
   data["loss"] = LossCurve(data, file("metrics.json"));
-  // Written last, by the program that made cloud or mesh; a new run removes it.
+  // The program that made the cloud or mesh writes its preview last, and a new
+  // run removes it.
   for (const char* name : {kCloudPreviewFile, kMeshPreviewFile}) {
     if (!std::filesystem::exists(folder / name)) continue;
     data[name == kMeshPreviewFile ? "mesh" : "cloud"] = ParseJson(file(name));

@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-// More would make the page large and slow; vertex indices have 16 bits.
+// More points would make the page large and slow; vertex indices have 16 bits.
 constexpr int kMaxPreviewPoints = 30000;
 constexpr int kMaxPreviewTriangles = 60000;
 constexpr int kMaxPreviewVertices = 65535;

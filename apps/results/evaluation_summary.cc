@@ -15,7 +15,7 @@ std::string Row(const std::string& quantity, const ErrorStatistics& errors,
                        factor * errors.median, factor * errors.max);
 }
 
-// The errors of positions, and over some seconds: three lines.
+// Three lines with the errors of positions, and of motions over some seconds.
 std::string Rows(const ErrorStatistics& ate, const RelativePoseError& rpe,
                  double seconds) {
   const std::string over = Format("RPE over %g s, ", seconds);

@@ -42,7 +42,7 @@ std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
       "tx,ty,tz,qx,qy,qz,qw,"
       "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms\n";
   for (const TrackedFrame& frame : frames) {
-    // Reasons are fixed texts without quotes.
+    // Reasons are fixed texts, which contain no quotes.
     text +=
         Format("%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%s,%d,%d,%d,%.4f",
                frame.timestamp, ToString(frame.status), frame.reason.c_str(),

@@ -24,7 +24,7 @@ std::string FormatKeyframesCsv(const KeyframeMap& map,
 // from_from_to and the information of [t, vec q] in the axes of the edge's end.
 std::string FormatG2o(const KeyframeMap& map);
 
-// Keyframes and pairs for the page.
+// Keyframes and pairs as JSON, for the page.
 nlohmann::json SlamToJson(const Slam& slam,
                           const std::vector<SlamFrame>& frames);
 

@@ -12,7 +12,7 @@
 #include "frontend/calibration/calibration_run.h"
 #include "frontend/settings/sequence.h"
 
-// Of rgbd_odometry and rgbd_slam, like --report and --finish_on_signal.
+// A flag of rgbd_odometry and rgbd_slam, like --report and --finish_on_signal.
 DECLARE_int32(threads);
 
 namespace rgbd_pose {

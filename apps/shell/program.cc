@@ -55,7 +55,7 @@ class SettingFlags {
     Add(setting, &texts_.back().second);
   }
 
-  // gflags keeps both addresses.
+  // gflags keeps the addresses of both values.
   template <typename Value>
   void Add(const Setting& setting, Value* current) {
     defaults_.emplace_back(*current);
@@ -136,7 +136,8 @@ void PrintHelp(const ProgramInfo& info) {
       "6 stopped early: results so far are kept.\n");
 }
 
-// The words of the command line; a recording that begins them is --dataset.
+// The words of the command line. If a recording begins them, it becomes
+// --dataset.
 std::vector<std::string> Words(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   gflags::CommandLineFlagInfo flag;
@@ -192,7 +193,8 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
     if (info.has_default_output) SetDefaultOutput();
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
-    // Ignored: exceeding a file size limit is then reported like a full disk.
+    // This signal is ignored, so that exceeding a file size limit is reported
+    // like a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     // Programs have threads of their own; OpenCV's would compete with them.
     cv::setNumThreads(1);

@@ -95,7 +95,7 @@ void RequireOutside(const std::string& flag, const std::string& folder,
 void RequireOtherFolder(const std::string& flag, const std::string& folder,
                         const std::string& other);
 
-// More threads than any machine could use here.
+// This is more threads than any machine could use here.
 inline constexpr int kMaxThreads = 256;
 
 // The number of processor cores that this process may use, at least 1.

@@ -5,8 +5,8 @@
 
 namespace rgbd_pose {
 
-// A progress bar on stderr, if this is a terminal; erased on destruction. If
-// the total is unknown (0), it is only a number.
+// A progress bar on stderr, if this is a terminal. It is erased on destruction.
+// If the total is unknown (0), it is only a number.
 class ProgressBar {
  public:
   ProgressBar(std::string label, int total);

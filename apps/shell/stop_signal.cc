@@ -38,16 +38,16 @@ class Handlers {
   struct sigaction before_[2] = {};
 };
 
-// Of CleanEnd.
+// The state of CleanEnd, for its signal handler.
 int pipe_ends[2];  // signal numbers; 0: the object ends
 Handlers before_clean_end;
 
-// Of StopSignal.
+// The state of StopSignal, for its signal handler.
 volatile std::sig_atomic_t came = 0;
 Handlers before_stop;
 
 void SendThroughPipe(char number) {
-  // A full pipe holds a signal already.
+  // If the pipe is full, it holds a signal already.
   const ssize_t written = write(pipe_ends[1], &number, 1);
   static_cast<void>(written);
 }

@@ -132,7 +132,7 @@ ViewImages LiveView::Show(Frame frame) const {
   return images;
 }
 
-// A late frame delays all later ones: the lost time is not caught up.
+// A late frame delays all later ones, because lost time is not caught up.
 void LiveView::KeepPace(const std::function<bool()>& is_interrupted) {
   if (speed_ <= 0.0) return;
   const std::vector<TrackedFrame>& frames = run_.frames();

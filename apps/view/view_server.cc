@@ -32,7 +32,8 @@ constexpr milliseconds kInterval(80);
 // Interval of events without news. They detect pages that have been closed.
 constexpr milliseconds kHeartbeat(500);
 
-// s; only the page's own thread waits for a browser that does not read.
+// In seconds. Only the page's own thread waits for a browser that does not
+// read.
 constexpr int kWriteTimeout = 2;
 
 // Maximum time for sending the last news to the pages.
@@ -131,7 +132,8 @@ class ViewServer::Impl {
     button("/stop", [this] { state_->Stop(); });
   }
 
-  // Rejects other sites' requests: by a host name of theirs or from their page.
+  // Rejects the requests of other sites: those with a host name of theirs, or
+  // from a page of theirs.
   bool IsOurs(const Request& request) const {
     // Browsers leave out the usual port.
     const std::string port = port_ == 80 ? "" : ":" + std::to_string(port_);
@@ -172,7 +174,7 @@ class ViewServer::Impl {
     return true;
   }
 
-  // Encoded once for all pages.
+  // The images are encoded once for all pages.
   std::string Images(const ViewNews& news) {
     const std::lock_guard<std::mutex> lock(images_mutex_);
     if (news.images_index > packed_index_) {

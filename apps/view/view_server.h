@@ -12,8 +12,9 @@ namespace rgbd_pose {
 // Requests with another host name or from another page are refused.
 class ViewServer {
  public:
-  // `title`: title of the page; port 0: any free port. The state must outlive
-  // this object. Throws InputError if it cannot listen on the port.
+  // `title` is the title of the page; port 0 means any free port. The state
+  // must outlive this object. Throws InputError if it cannot listen on the
+  // port.
   ViewServer(const std::string& title, int port, ViewState* state);
   // Sends the last news to open pages first.
   ~ViewServer();

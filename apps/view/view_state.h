@@ -77,7 +77,7 @@ class ViewState {
  public:
   // Adds news. Poses and images replace earlier ones.
   void Add(ViewNews news);
-  // The last call: sets the location of the results.
+  // Sets the location of the results. This is the last call.
   void Finish(const std::string& results);
 
   // Waits up to `patience` for news since the cursor; long ones come in parts.
@@ -116,7 +116,7 @@ constexpr size_t kViewPointBytes = 7;
 std::string SamplePoints(const Frame& frame, const Camera& camera);
 
 // ViewImages::moves of a frame with a known velocity: where its rows were
-// exposed, not as at the time stamp. `weights`: of MotionEstimate.
+// exposed, not as at the time stamp. `weights` are those of MotionEstimate.
 std::vector<cv::Vec<float, 5>> MatchesInImage(
     const Frame& frame, const Camera& camera, const Correspondences& matches,
     const std::vector<double>& weights);

@@ -57,7 +57,7 @@ TruthNoise ReadTruthNoise(const std::string& path) {
 TruthNoise TruthNoiseByName(std::string_view text) {
   if (text.find("rgbd_dataset_freiburg") == text.npos) return {};
   // Errors of the motions of a moving camera by its markers, their mounting on
-  // the camera and its clock: docs/benchmarks.md.
+  // the camera and its clock: docs/reference/sequences.md.
   return {0.002, 0.2 * kRadiansPerDegree, "as known of the TUM benchmark"};
 }
 

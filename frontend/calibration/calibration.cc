@@ -14,7 +14,7 @@ namespace {
 
 using Status = CalibratedParameter::Status;
 
-// In the order of CalibrationIndex.
+// The members of Camera in the order of CalibrationIndex.
 constexpr double Camera::*kOfLens[kLensSize] = {
     &Camera::fx, &Camera::fy, &Camera::cx, &Camera::cy, &Camera::k1,
     &Camera::k2, &Camera::k3, &Camera::k4, &Camera::p1, &Camera::p2};
@@ -27,7 +27,8 @@ CalibrationVector ThetaOf(const Camera& camera) {
   return theta;
 }
 
-// Solves and measures the scales of the residuals; again if they changed.
+// Solves, measures the scales of the residuals, and does both again if the
+// scales have changed.
 void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
                      CalibrationState* state) {
   const double pixel = state->pixel_scale, depth = state->depth_scale;
@@ -54,7 +55,7 @@ constexpr double kMaxSpread = 4.0;
 
 // The steps of Calibrate and what they share.
 struct CalibrationSteps {
-  // As given to Calibrate.
+  // These are the arguments of Calibrate.
   const KeyframeMap& map;
   const RgbdCamera& first;
   const FrontendOptions& features;  // for this camera

@@ -210,7 +210,8 @@ std::vector<std::vector<SeenLandmark>> FindLandmarks(
   std::vector<std::vector<SeenLandmark>> found(num_keyframes);
   threads = std::max(1, std::min(threads, num_keyframes));
   ParallelFor(threads, threads, [&](int thread) {
-    // Consecutive keyframes per thread, because they share decoded neighbours.
+    // Each thread has consecutive keyframes, because they share decoded
+    // neighbours.
     LandmarkMatcher matcher(map, chosen.in_map, options);
     const int begin = thread * num_keyframes / threads;
     const int end = (thread + 1) * num_keyframes / threads;
@@ -231,7 +232,8 @@ void AddLandmarks(const std::vector<std::vector<SeenLandmark>>& found,
   const double share =
       std::min(1.0, max_views / std::max(1.0, static_cast<double>(all_views)));
   for (const auto& of_keyframe : found) {
-    // Choose evenly: landmarks are ordered by their position in the image.
+    // They are chosen evenly, because they are ordered by their position in the
+    // image.
     const auto count =
         static_cast<size_t>(std::ceil(share * of_keyframe.size()));
     for (size_t chosen = 0; chosen < count; ++chosen) {

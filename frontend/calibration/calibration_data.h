@@ -31,7 +31,8 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const FrontendOptions& features,
                                        int max_views, int threads);
 
-// Other sources of the camera's position; null: not available.
+// Other sources of the camera's position. A null pointer means that the source
+// is not available.
 struct CalibrationScale {
   const Trajectory* ground_truth = nullptr;  // the true path
   const Trajectory* motion_guess = nullptr;  // for example from wheels

@@ -7,7 +7,8 @@
 namespace rgbd_pose {
 namespace {
 
-// The part of consecutive keyframes. The state is that of the whole recording.
+// The part of a recording that has these consecutive keyframes, in the state of
+// the whole recording.
 CalibrationHalf PartOf(const CalibrationViews& all,
                        const CalibrationState& found, int begin, int end) {
   CalibrationHalf part;
@@ -76,7 +77,8 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
   constexpr size_t kMinViews = 200;
   std::array<CalibrationHalf, 2> halves = HalvesOf(views, found);
   CalibrationVector variance[2];
-  // One half after the other: in parallel, the order of additions would change.
+  // The halves are solved one after the other: in parallel, the order of
+  // additions would change.
   for (int k = 0; k < 2; ++k) {
     CalibrationHalf& half = halves[k];
     if (half.views.world_from_cam.size() < kMinKeyframes ||

@@ -34,7 +34,7 @@ void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
     information += by_depth;
     if (depth.pixel_value == 0.0) return;
     const double expected = MeasuredFrom<double>(w, theta, data);
-    // Moves the depth along the plane to the position of the landmark.
+    // The depth is moved along the plane to the position of the landmark.
     const double there = depth.plane.dot(ray);
     const double pixel =
         depth.pixel_value * there / depth.plane.dot(depth.pixel_ray);

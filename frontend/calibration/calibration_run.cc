@@ -68,7 +68,8 @@ RecordingCalibration CalibrateRecording(
   OdometrySettings with_shutter = odometry;
   with_shutter.odometry.shutter = ShutterUse::kCamera;
   with_shutter.odometry.max_time_shift = 1.0;  // see CalibrationOdometry
-  // The same for all cameras and passes: scatter is measured relative to it.
+  // The noise is the same for all cameras and passes, because scatter is
+  // measured relative to it.
   with_shutter.depth_noise = NoiseFor(odometry, {});
   if (part.frames.empty()) {
     part.frames =

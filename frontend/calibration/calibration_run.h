@@ -33,8 +33,8 @@ struct RecordingCalibration {
 // Maps a recording and calibrates its camera from the map; again with the
 // camera found if depth was displaced by more than a pixel. `on_frame`, if not
 // empty, is called for each tracked frame with the pass, the number of frames
-// done in it and of all frames (0: not known in advance); `on_iteration` after
-// them for each iteration of the solver, with the pass and the number of
+// done in it and of all frames (0 if not known in advance); `on_iteration`
+// after them for each iteration of the solver, with the pass and the number of
 // iterations in it. Throws InputError as OpenSequence does, and for invalid
 // settings.
 RecordingCalibration CalibrateRecording(

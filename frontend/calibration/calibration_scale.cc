@@ -40,7 +40,7 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
     }
     *keyframe = static_cast<int>(NearestTime(data.timestamps, time));
     const size_t at = NearestTime(times, data.timestamps[*keyframe]);
-    // Across lost frames the path does not know the motion.
+    // The path does not know the motion across lost frames.
     const auto [first, last] = std::minmax(frame, at);
     const double usual = (times.back() - times.front()) / (times.size() - 1);
     for (size_t i = first; i < last; ++i) {

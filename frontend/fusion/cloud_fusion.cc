@@ -3,8 +3,8 @@
 namespace rgbd_pose {
 
 std::string FusionOptions::Check() const {
-  // Smaller cubes are more than any sensor has noise-free points for. With
-  // larger cubes, rooms are no longer recognisable.
+  // No sensor is accurate enough for smaller cubes, and with larger ones rooms
+  // are no longer recognisable.
   if (!(voxel_size >= 0.001 && voxel_size <= 1.0)) {
     return "the voxel size must be 0.001 to 1 m";
   }

@@ -13,7 +13,7 @@
 
 namespace rgbd_pose {
 
-// Of clouds and meshes.
+// The options that clouds and meshes share.
 struct FusionOptions {
   Camera camera;  // of all frames
 

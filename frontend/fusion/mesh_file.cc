@@ -14,7 +14,7 @@ namespace {
 
 using Formatter = std::string (*)(const TriangleMesh& mesh);
 
-// By file extension.
+// The function that writes each format, by file extension.
 constexpr Named<Formatter> kFormats[] = {{".ply", FormatMeshPly},
                                          {".glb", FormatGlb}};
 

@@ -146,7 +146,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
       }
     }
   }
-  // For each key a near block comes first.
+  // Among blocks of the same key a near one comes first.
   std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end(),
                          [](const SeenBlock& a, const SeenBlock& b) {
@@ -177,7 +177,7 @@ void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
       const Eigen::Vector3f start = origin +
                                     static_cast<float>(i) * steps.col(0) +
                                     static_cast<float>(j) * steps.col(1);
-      // A separate loop, which the compiler can vectorise.
+      // This is a separate loop, so that the compiler can vectorise it.
       std::array<float, kBlockSide> us, vs, zs;
       for (int k = 0; k < kBlockSide; ++k) {
         const auto along = static_cast<float>(k);

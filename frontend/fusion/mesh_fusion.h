@@ -33,7 +33,8 @@ struct MeshFusionOptions : FusionOptions {
 // Fuses the depth images of frames with known poses into a mesh in the world
 // frame of their poses: the zero level of a truncated signed distance averaged
 // over all frames (B. Curless & M. Levoy, A Volumetric Method for Building
-// Complex Models from Range Images, SIGGRAPH 1996). Deterministic.
+// Complex Models from Range Images, SIGGRAPH 1996). The result is
+// deterministic.
 class MeshFusion {
  public:
   // The options must pass MeshFusionOptions::Check.
@@ -67,7 +68,8 @@ class MeshFusion {
 
   MeshFusionOptions options_;
   Undistorter undistorter_;
-  // By steps of depth. Few steps keep the table in the processor's cache.
+  // The table has one entry per step of depth. Few steps keep it in the
+  // processor's cache.
   std::vector<DepthUse> uses_;
   double depth_scale_ = 0.0;
   std::vector<int> max_steps_;  // to neighbours, by raw depth; -1: no depth

@@ -134,7 +134,8 @@ class Mesher {
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::Vector3i end = voxel;
         ++end[axis];
-        // The block exists: the voxel has a vertex, so all corners are known.
+        // The block exists, because the voxel has a vertex and so all corners
+        // are known.
         const TsdfVolume::Block& block =
             volume_.block(beyond[end[axis] == kSide ? 4 >> axis : 0]);
         const float there = block[TsdfVolume::PlaceOf(end)].distance;
@@ -142,7 +143,7 @@ class Mesher {
         Eigen::Vector3i b = Eigen::Vector3i::Zero(), c = b;
         b[(axis + 1) % 3] = 1;
         c[(axis + 2) % 3] = 1;
-        // Counter-clockwise as seen from the far end of the axis.
+        // The quad is counter-clockwise as seen from the far end of the axis.
         AddQuad({vertex_at(voxel), vertex_at(voxel - b),
                  vertex_at(voxel - b - c), vertex_at(voxel - c)},
                 /*is_seen_from_end=*/here < 0.0F);
@@ -184,7 +185,7 @@ class Mesher {
   const TsdfVolume& volume_;
   const double voxel_size_;
   const float min_weight_;
-  // Of the voxels of each block; empty for a block without vertices.
+  // The vertices of the voxels of each block; empty for a block without any.
   std::vector<std::vector<int>> vertices_;
   TriangleMesh mesh_;
 };

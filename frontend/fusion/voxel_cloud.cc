@@ -75,7 +75,8 @@ VoxelCloud::Voxel* VoxelCloud::FindOrInsert(uint64_t key) {
     *slot = static_cast<uint32_t>(voxels_.size());
   }
   last_ = *slot - 1;
-  // At most half full: a search takes 1.5 probes on average.
+  // The table is at most half full, so that a search takes 1.5 probes on
+  // average.
   if (2 * voxels_.size() > slots_.size()) {
     slots_.assign(2 * slots_.size(), 0);
     --hash_shift_;

@@ -10,7 +10,8 @@
 namespace rgbd_pose {
 
 // Merges points in cubes of one size. Only the mean position and colour of each
-// non-empty cube are stored. Deterministic for the same points in this order.
+// non-empty cube are stored. The same points in the same order give the same
+// result.
 class VoxelCloud {
  public:
   // The side of a cube in metres; must be > 0.
@@ -32,7 +33,7 @@ class VoxelCloud {
  private:
   struct Voxel {
     uint64_t key;
-    // Sums; positions are relative to the centre of the cube.
+    // These are sums. Positions are relative to the centre of the cube.
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();
     std::array<uint32_t, 3> color = {};
     uint32_t count = 0;

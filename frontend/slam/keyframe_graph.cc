@@ -168,7 +168,8 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
       problem.pose_of[at] = problem.graph.AddPose(pose(at), is_fixed);
     }
   };
-  // Nor must a component without a fixed pose: its first keyframe is fixed too.
+  // A component without a fixed pose must not make it fail either, so the first
+  // keyframe of each is fixed, too.
   const std::vector<int> first = links_.FirstOfParts();
   std::vector<bool> is_held(nodes_.size(), false);
   for (int at = 0; at < size(); ++at) {

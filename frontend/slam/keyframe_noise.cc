@@ -5,8 +5,9 @@
 #include "frontend/slam/keyframe_graph.h"
 #include "robust/m_estimator.h"
 
-// The uncertainty of pairs: their covariance, a noise floor, and an error
-// proportional to the motion, which is caused by an inaccurate calibration.
+// This file has the uncertainty of pairs: their covariance, a noise floor, and
+// an error proportional to the motion, which is caused by an inaccurate
+// calibration.
 
 namespace rgbd_pose {
 namespace {
@@ -56,7 +57,8 @@ MotionMatrix KeyframeGraph::CovarianceOf(const RelativePose& edge) const {
 MotionMatrix KeyframeGraph::CovarianceInGraph(const KeyframePair& pair) const {
   // Errors of tracked pairs cancel in part along a path: what is wrong with a
   // keyframe affects the pair that ends with it and the pair that begins with
-  // it. So much of the covariance remains (paths of real cameras with truth).
+  // it. This share of the covariance remains, as measured on paths of real
+  // cameras with a ground truth.
   constexpr double kRemaining = 0.5;
   RelativePose edge = pair.edge;
   if (pair.is_tracked) edge.covariance *= kRemaining;
@@ -76,9 +78,9 @@ MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
   return covariance / std::max(rho[1], 1e-9);
 }
 
-// With the proportional error fitted, the median disagreement between the pairs
-// and the current poses is as expected from the covariances. Tracked pairs are
-// ignored, as the poses follow them too closely.
+// The proportional error is fitted so that the median disagreement between the
+// pairs and the current poses is as expected from the covariances. Tracked
+// pairs are ignored, as the poses follow them too closely.
 void KeyframeGraph::FitProportionalError() {
   const auto disagree = [this] {
     std::vector<double> squares;

@@ -4,7 +4,8 @@
 
 #include "frontend/slam/mapper.h"
 
-// Finds keyframes that see the place of the newest one, and their motions.
+// This file finds the keyframes that see the place of the newest one, and
+// measures the motions between them.
 
 namespace rgbd_pose {
 namespace {
@@ -81,7 +82,8 @@ std::vector<int> Mapper::SeeingTheSame(int newest) const {
 }
 
 // The motion between two keyframes, if it is reliable and near the initial
-// guess, with a covariance that includes timing errors. `frame`: of `cur`.
+// guess, with a covariance that includes timing errors. `frame` belongs to
+// `cur`.
 std::optional<RelativePose> Mapper::MakePair(int ref, int cur,
                                              const PreparedFrame& frame,
                                              const Rigid3d& cur_from_ref_guess,
@@ -194,8 +196,8 @@ bool Mapper::AreConnected(const RelativePose& edge) {
   std::vector<Rigid3d>& meetings =
       meetings_[{graph_.segment(edge.ref), graph_.segment(edge.cur)}];
   for (const Rigid3d& earlier : meetings) {
-    // Compared where the camera is: far from the origin of a segment, a small
-    // rotation is a large translation.
+    // The motions are compared where the camera is, because far from the origin
+    // of a segment a small rotation is a large translation.
     if (IsWithin(earlier * graph_.pose(edge.cur),
                  ref_from_cur * graph_.pose(edge.cur), kMeetingRotation,
                  kMeetingTranslation)) {

@@ -59,7 +59,8 @@ void RequireNoOtherThings(const fs::path& folder) {
   if (fs::exists(folder / kIndex)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const fs::path& file = entry.path();
-    // Left by a program that was killed before its first map was complete.
+    // A program that was killed before its first map was complete leaves such
+    // files.
     if (IsImage(file) || file.filename() == TemporaryPath(kIndex)) continue;
     throw InputError(folder.string() +
                      ": contains files that are not part of a map; choose an "

@@ -77,7 +77,7 @@ struct LineReader {
 
 // The words of each line in their order, for a LineWriter or a LineReader.
 
-// Without the constructor of Rigid3d, which might change the last digit.
+// Does not use the constructor of Rigid3d, which might change the last digit.
 template <typename Line, typename Rigid>
 void PassMotion(Line* line, Rigid* motion) {
   for (int i = 0; i < 3; ++i) line->Number(&motion->translation[i]);

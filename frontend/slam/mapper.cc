@@ -144,7 +144,8 @@ std::optional<Keyframe> Mapper::Find(const PreparedFrame& lost) {
   return WithImages(found->keyframe);
 }
 
-// Finds the keyframe with the nearest view, but none that the odometry has.
+// Finds the keyframe with the nearest view among those that the odometry does
+// not have.
 void Mapper::FindReturn(int newest, MapUpdate* update) const {
   double least = 2.0 * kRedundantFlowPx;
   int nearest = -1;

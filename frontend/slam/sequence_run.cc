@@ -119,7 +119,8 @@ void ResidualHistogram::Add(const MotionEstimate& estimate) {
     if (count == 0) continue;
     ++matches;
     ++degrees[std::min<size_t>(count, degrees.size() - 1)];
-    // Compares before the conversion: a huge norm does not fit into an index.
+    // The comparison comes before the conversion, because a huge norm does not
+    // fit into an index.
     const double place = estimate.residual_norms[i] / kNormBin;
     if (place < norms.size()) {
       ++norms[static_cast<size_t>(place)];
@@ -143,7 +144,8 @@ TrackedFrame SequenceRun::Track(const PreparedFrame& frame,
   TrackedFrame tracked = in_map.tracked;
   tracked.world_from_cam = in_map.map_from_cam();
   tracked.segment = in_map.segment;
-  // Edges are kept only once: a long recording would take much memory.
+  // Edges are kept only once, because those of a long recording take much
+  // memory.
   in_map.tracked.edges = {};
   slam_frames_.push_back(std::move(in_map));
   return tracked;

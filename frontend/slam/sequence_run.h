@@ -72,10 +72,11 @@ class SequenceRun {
 
   void Add(const StreamedFrame& next);
 
-  // The same for any frame; see Odometry::Track. The guess may be null.
+  // Tracks any frame, as Odometry::Track does. The guess may be null.
   void Add(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess);
 
-  // What was found of the last frame is not to be relied on.
+  // Marks the last frame as degraded unless it is lost: what was found of it is
+  // not to be relied on.
   void DegradeLast(const std::string& reason);
 
   // The odometry that tracks the frames and can prepare frames in advance.
@@ -94,7 +95,8 @@ class SequenceRun {
   const std::vector<std::string>& damaged() const { return results_.damaged; }
   const RepeatedCounts& repeated() const { return results_.repeated; }
 
-  // What else became of the frames of the source, after the last one.
+  // Sets which frames of the source were left out or repeated. Call it after
+  // the last frame.
   void SetLeftOut(const std::vector<std::string>& damaged,
                   const RepeatedCounts& repeated) {
     results_.damaged = damaged;

@@ -20,7 +20,7 @@ Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
 }
 
 void Slam::Load(KeyframeMap map, bool is_held) {
-  // Ids of an earlier loaded map may be the same.
+  // A map that was loaded before may have the same ids.
   for (Keyframe& keyframe : map.keyframes) {
     keyframe.id += first_id_;
     keyframe.segment += first_segment_;
@@ -89,7 +89,8 @@ void Slam::Follow(const TrackedFrame& tracked) {
     const int reference = MapId(tracked.reference);
     const Rigid3d& cur_from_ref = tracked.cur_from_reference;
     if (reference != reference_) {
-      // To an earlier reference by the motion from the previous one, if known.
+      // The frame has moved to an earlier reference: use its motion from the
+      // previous one, if that was measured.
       const auto left = std::find_if(tracked.edges.begin(), tracked.edges.end(),
                                      [&](const RelativePose& edge) {
                                        return MapId(edge.ref) == reference_ &&

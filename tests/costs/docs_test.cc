@@ -1,4 +1,4 @@
-// Compares docs/costs.md and docs/losses.md with the lists of costs and losses.
+// Compares the pages on costs and on losses with the lists of both.
 
 #include <gtest/gtest.h>
 
@@ -40,12 +40,18 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
-// Sections "## `name`" and the lines "| `name` | rows | independent rows |".
+// The lines "| `name` | rows | independent rows |" of the page on costs, and
+// the sections "## `name`" of that on their formulas.
 class CostsDocumentTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::ifstream file(RGBD_POSE_DOCS_DIR "/costs.md");
-    ASSERT_TRUE(file.is_open());
+    Read(RGBD_POSE_DOCS_DIR "/costs.md");
+    Read(RGBD_POSE_DOCS_DIR "/reference/cost_formulas.md");
+  }
+
+  void Read(const std::string& path) {
+    std::ifstream file(path);
+    ASSERT_TRUE(file.is_open()) << path;
     std::string line;
     while (std::getline(file, line)) {
       if (line.rfind("## `", 0) == 0) {
@@ -79,7 +85,8 @@ std::vector<std::string> AllCostNames() {
 
 TEST_F(CostsDocumentTest, HasEveryCostWithItsRows) {
   for (const std::string& name : AllCostNames()) {
-    EXPECT_EQ(sections_[name], 1) << "docs/costs.md has no section on " << name;
+    EXPECT_EQ(sections_[name], 1)
+        << "docs/reference/cost_formulas.md has no section on " << name;
     ASSERT_TRUE(table_.count(name))
         << name << " is missing in the table of docs/costs.md";
     const std::unique_ptr<MotionCost> cost = MakeAnyCost(name);
