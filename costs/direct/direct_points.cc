@@ -46,11 +46,13 @@ double DepthBefore(const FrameView& frame, int column, int row, int scale) {
 // Finds the point (camera axes at the stamp, m) that a pixel of a level shows if
 // rows, or gray levels and depths, were exposed at different times. (column,
 // row): as in DepthBefore. The depth was measured when the camera saw the point
-// elsewhere; where that is depends on the depth itself, so it is looked up twice.
+// elsewhere; where that is depends on the depth itself, so it is looked up again
+// if it was far from what was expected.
 bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
                  const Eigen::Vector2i& at, int column, int row,
                  double* depth, Eigen::Vector3d* X) {
   constexpr double kUsualDepth = 2.0;  // m, to begin with where none is known
+  constexpr double kSmallChange = 0.01;  // relative depth: a tenth of a pixel
   constexpr int kSteps = 2;
   const FrameTiming& timing = frame.timing;
   const Camera& camera = frame.levels[0].camera;
@@ -80,7 +82,9 @@ bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
     const double down = 0.5 * (frame.DepthAt(u, v + 1) - frame.DepthAt(u, v - 1));
     const double seen = frame.DepthAt(u, v) + right * (pixel.x() - u) +
                         down * (pixel.y() - v);
-    z += seen - measured.z();
+    const double change = seen - measured.z();
+    z += change;
+    if (std::abs(change) < kSmallChange * z) break;
   }
   *depth = z;
   *X = timing.twist.MovedPoint(ray * z, -seconds);
@@ -104,10 +108,10 @@ bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
   double inverse[kSide * kSide], sum = 0.0, du = 0.0, dv = 0.0;
   for (int k = 0; k < kSide * kSide; ++k) {
     const int i = k % kSide - 2, j = k / kSide - 2;
-    const double depth =
-        frame.DepthAt(column + i * kSlopeStep, row + j * kSlopeStep);
-    if (depth <= 0.0) return false;
-    inverse[k] = 1.0 / depth;
+    const uint16_t raw =
+        frame.depth.At(column + i * kSlopeStep, row + j * kSlopeStep);
+    if (raw == 0 || raw == UINT16_MAX) return false;
+    inverse[k] = frame.depth_scale / raw;
     sum += inverse[k];
     du += i * inverse[k];
     dv += j * inverse[k];
