@@ -43,15 +43,15 @@ double DepthBefore(const FrameView& frame, int column, int row, int scale) {
           frame.DepthAt(column, row - 1) + frame.DepthAt(column - 1, row - 1));
 }
 
-// Finds the point (camera axes at the stamp, m) that a pixel of a level shows if
-// rows, or gray levels and depths, were exposed at different times. (column,
+// Finds the point (camera axes at the stamp, m) that a pixel of a level shows
+// if rows, or gray levels and depths, were exposed at different times. (column,
 // row): as in DepthBefore. The depth was measured when the camera saw the point
-// elsewhere; where that is depends on the depth itself, so it is looked up again
-// if it was far from what was expected.
+// elsewhere; where that is depends on the depth itself, so it is looked up
+// again if it was far from what was expected.
 bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
-                 const Eigen::Vector2i& at, int column, int row,
-                 double* depth, Eigen::Vector3d* X) {
-  constexpr double kUsualDepth = 2.0;  // m, to begin with where none is known
+                 const Eigen::Vector2i& at, int column, int row, double* depth,
+                 Eigen::Vector3d* X) {
+  constexpr double kUsualDepth = 2.0;    // m, to begin with where none is known
   constexpr double kSmallChange = 0.01;  // relative depth: a tenth of a pixel
   constexpr int kSteps = 2;
   const FrameTiming& timing = frame.timing;
@@ -78,10 +78,12 @@ bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
     const int v = static_cast<int>(pixel.y() + 0.5);
     if (!IsOneSurface(frame, u, v)) return false;
     // The slope of the surface, as the pixel is not at (u, v) exactly.
-    const double right = 0.5 * (frame.DepthAt(u + 1, v) - frame.DepthAt(u - 1, v));
-    const double down = 0.5 * (frame.DepthAt(u, v + 1) - frame.DepthAt(u, v - 1));
-    const double seen = frame.DepthAt(u, v) + right * (pixel.x() - u) +
-                        down * (pixel.y() - v);
+    const double right =
+        0.5 * (frame.DepthAt(u + 1, v) - frame.DepthAt(u - 1, v));
+    const double down =
+        0.5 * (frame.DepthAt(u, v + 1) - frame.DepthAt(u, v - 1));
+    const double seen =
+        frame.DepthAt(u, v) + right * (pixel.x() - u) + down * (pixel.y() - v);
     const double change = seen - measured.z();
     z += change;
     if (std::abs(change) < kSmallChange * z) break;

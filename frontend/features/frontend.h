@@ -38,8 +38,8 @@ class FeatureSet {
  public:
   virtual ~FeatureSet() = default;
 
-  // Where the features are in their own frame: image points (px, distorted), and
-  // what was measured there.
+  // Where the features are in their own frame: image points (px, distorted),
+  // and what was measured there.
   std::vector<cv::Point2f> points;
   std::vector<Observation> observations;
 };
@@ -88,9 +88,10 @@ class Frontend {
   // may reuse the memory for the next frame.
   virtual std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) = 0;
 
-  // Observes the features of a frame again: its velocity (Frame::twist) is known
-  // better now. The motion from the camera at its stamp to the axes that motions
-  // to other frames start from is no longer the identity if the stamp has moved.
+  // Observes the features of a frame again: its velocity (Frame::twist) is
+  // known better now. The motion from the camera at its stamp to the axes that
+  // motions to other frames start from is no longer the identity if the stamp
+  // has moved.
   void ObserveAgain(const Frame& frame, const Rigid3d& reference_from_stamp,
                     FeatureSet* features) const;
 

@@ -11,8 +11,8 @@
 
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/frame/view_overlap.h"
 #include "frontend/frame/frame_rectifier.h"
+#include "frontend/frame/view_overlap.h"
 #include "frontend/places/keyframe.h"
 #include "frontend/places/place_database.h"
 #include "frontend/slam/keyframe_graph.h"

@@ -118,8 +118,8 @@ void DirectTracker::Track(const Reference& reference,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
   MotionEstimate* const estimate = &tracked->estimate;
-  Estimate(*reference.images(), frame, guess.cur_from_ref, PriorOf(options_, guess),
-           nullptr, &estimators_.leading, estimate);
+  Estimate(*reference.images(), frame, guess.cur_from_ref,
+           PriorOf(options_, guess), nullptr, &estimators_.leading, estimate);
   if (estimate->num_used > 0) {
     Estimate(*reference.images(), frame, Rigid3d(estimate->cur_from_prev),
              PriorOf(options_, guess), nullptr, &estimators_.refining,
@@ -183,14 +183,13 @@ Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
                                  const TrackingGuess& guess) {
   if (!estimators_.coarse.has_value()) return guess.cur_from_ref;
-  Estimate(*reference.images(), frame, guess.cur_from_ref, PriorOf(options_, guess),
-           nullptr, &*estimators_.coarse, &start_);
+  Estimate(*reference.images(), frame, guess.cur_from_ref,
+           PriorOf(options_, guess), nullptr, &*estimators_.coarse, &start_);
   return HasMotion(start_) ? start_.cur_from_prev : guess.cur_from_ref;
 }
 
 void DirectTracker::Estimate(const FrameView& prev, const PreparedFrame& frame,
-                             const Rigid3d& start,
-                             const MotionPrior& prior,
+                             const Rigid3d& start, const MotionPrior& prior,
                              const TrackingResult* by_features,
                              Estimator* estimator,
                              MotionEstimate* estimate) const {

@@ -58,7 +58,8 @@ class DirectTracker final : public Tracker {
 
  private:
   // `by_features`: their matches are used as well; null: only pixels.
-  void Estimate(const FrameView& prev, const PreparedFrame& frame, const Rigid3d& start, const MotionPrior& prior,
+  void Estimate(const FrameView& prev, const PreparedFrame& frame,
+                const Rigid3d& start, const MotionPrior& prior,
                 const TrackingResult* by_features, Estimator* estimator,
                 MotionEstimate* estimate) const;
   // Estimates the velocity from the motion, then the motion again with it.

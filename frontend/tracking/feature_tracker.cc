@@ -27,8 +27,8 @@ constexpr double kMaxRivalCells = 0.7;
 constexpr double kMinAgreeingViewOk = 0.45;
 
 // If a smaller share of a reference's features would be trusted, failures are
-// those of the image, such as blur, and not of something that moves: that covers
-// less of it, or it cannot be told from the scene.
+// those of the image, such as blur, and not of something that moves: that
+// covers less of it, or it cannot be told from the scene.
 constexpr double kMinTrustedShare = 0.3;
 
 double ShareOf(const FeatureReference& reference,

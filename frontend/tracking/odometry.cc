@@ -68,7 +68,7 @@ Odometry::Odometry(const OdometryOptions& options,
       tracker_(std::move(tracker)),
       relocaliser_(tracker_->images()),
       attempts_(tracker_.get()),
-      shutter_tracking_(tracker_.get()) {
+      state_(tracker_.get()) {
   RequireSound(options.Check(), "odometry: ");
 }
 
@@ -93,26 +93,28 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
-  const double last_interval = interval_;
-  interval_ = result.index > 0 ? frame.timestamp - timestamp_ : 0.0;
+  const double last_interval = state_.interval;
+  state_.interval = result.index > 0 ? frame.timestamp - state_.timestamp : 0.0;
   // Across missing frames, the motion at constant velocity is longer.
-  if (last_interval > 0.0 && interval_ > 0.0 && interval_ < kMaxMovedOn &&
-      (interval_ > kMissingFrames * last_interval ||
-       last_interval > kMissingFrames * interval_)) {
-    cur_from_prev_ =
-        TwistOf(cur_from_prev_, last_interval).MotionDuring(interval_);
+  if (last_interval > 0.0 && state_.interval > 0.0 &&
+      state_.interval < kMaxMovedOn &&
+      (state_.interval > kMissingFrames * last_interval ||
+       last_interval > kMissingFrames * state_.interval)) {
+    state_.cur_from_prev = TwistOf(state_.cur_from_prev, last_interval)
+                               .MotionDuring(state_.interval);
   }
-  timestamp_ = frame.timestamp;
-  stamp_jitter_.Add(frame.depth_delay, interval_);
-  has_shutter_ = HasShutter(frame);
-  twist_.reset();
-  twist_covariance_.setZero();
-  aligns_depth_ = std::sqrt(timing_covariance_(5, 5)) < options_.max_time_shift;
-  if (has_shutter_) {
-    twist_covariance_ = MotionCovarianceOfTwist(frame.Timing(Twist()),
-                                                kSigmaAngular, kSigmaLinear);
+  state_.timestamp = frame.timestamp;
+  state_.stamp_jitter.Add(frame.depth_delay, state_.interval);
+  state_.has_shutter = HasShutter(frame);
+  state_.twist.reset();
+  state_.twist_covariance.setZero();
+  state_.aligns_depth =
+      std::sqrt(state_.timing_covariance(5, 5)) < options_.max_time_shift;
+  if (state_.has_shutter) {
+    state_.twist_covariance = MotionCovarianceOfTwist(
+        frame.Timing(Twist()), kSigmaAngular, kSigmaLinear);
   }
-  timing_covariance_ = TimingCovariance(
+  state_.timing_covariance = TimingCovariance(
       frame, {{kSigmaAngular, 0.0, 0.0}, {kSigmaLinear, 0.0, 0.0}});
   {
     const StageTimer timer(&result.track_ms);
@@ -120,11 +122,11 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     if (cur_from_prev_guess != nullptr) {
       prediction = Predict(*cur_from_prev_guess, guess_covariance);
     }
-    if (reference_ == nullptr) {
+    if (state_.reference == nullptr) {
       if (TakeReference(frame, WorldFromCam(), &result)) {
         result.status = TrackingStatus::kOk;
       }
-    } else if (is_lost_ && options_.on_lost == LostPolicy::kStop) {
+    } else if (state_.is_lost && options_.on_lost == LostPolicy::kStop) {
       result.reason = "stopped after an earlier frame was lost";
     } else if (!Follow(frame, prediction, &result) &&
                !Relocalise(frame, &result)) {
@@ -132,28 +134,29 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     }
   }
   result.world_from_cam = WorldFromCam();
-  result.segment = segment_;
-  if (earlier_segment_.has_value() && result.status == TrackingStatus::kOk) {
+  result.segment = state_.segment;
+  if (state_.earlier_segment.has_value() &&
+      result.status == TrackingStatus::kOk) {
     result.status = TrackingStatus::kDegraded;
     result.reason = "not yet reconnected to the previous segment";
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
-  last_.reset();
+  state_.last.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
-    last_ = {result.index,
-             segment_,
-             result.world_from_cam,
-             frame.WithTwist(twist_),
-             {},
-             {},
-             twist_covariance_ + timing_covariance_};
+    state_.last = {result.index,
+                   state_.segment,
+                   result.world_from_cam,
+                   frame.WithTwist(state_.twist),
+                   {},
+                   {},
+                   state_.twist_covariance + state_.timing_covariance};
   }
   return result;
 }
 
 void Odometry::JudgeInflation(TrackedFrame* result) {
-  is_doubtful_ = attempts_.kept().is_ambiguous;
+  state_.is_doubtful = attempts_.kept().is_ambiguous;
   // A failed attempt says nothing of the camera.
   if (result->status == TrackingStatus::kLost || result->reference < 0 ||
       result->source == TrackingSource::kDirect) {
@@ -161,16 +164,16 @@ void Odometry::JudgeInflation(TrackedFrame* result) {
   }
   const double inflation = attempts_.kept().covariance_factor;
   if (result->status == TrackingStatus::kOk &&
-      inflation > kMaxInflation * usual_inflation_) {
-    is_doubtful_ = true;
+      inflation > kMaxInflation * state_.usual_inflation) {
+    state_.is_doubtful = true;
     result->status = TrackingStatus::kDegraded;
     result->reason =
         "neighbouring features err alike: something moves, or the shutter is "
         "not known";
   }
   const double change =
-      inflation > usual_inflation_ ? kInflationUp : kInflationDown;
-  usual_inflation_ = std::max(1.0, change * usual_inflation_);
+      inflation > state_.usual_inflation ? kInflationUp : kInflationDown;
+  state_.usual_inflation = std::max(1.0, change * state_.usual_inflation);
 }
 
 MotionMatrix Odometry::TimingCovariance(const Frame& frame,
@@ -178,9 +181,9 @@ MotionMatrix Odometry::TimingCovariance(const Frame& frame,
   const bool is_known =
       options_.shutter == ShutterUse::kCamera && frame.HasKnownTimes();
   const double sigma =
-      is_known
-          ? std::hypot(kSigmaKnownTime, kShareOfDepth * stamp_jitter_.sigma())
-          : kSigmaUnknownTime;
+      is_known ? std::hypot(kSigmaKnownTime,
+                            kShareOfDepth * state_.stamp_jitter.sigma())
+               : kSigmaUnknownTime;
   const double turn = twist.angular.norm();
   const double shift = twist.linear.norm() + kShiftOfTurn * turn;
   return IndependentErrors(sigma * turn, sigma * shift);
@@ -190,87 +193,94 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
                                        const MotionMatrix* covariance) const {
   const MotionMatrix usual = IndependentErrors(
       options_.guess_sigma_rotation, options_.guess_sigma_translation);
-  return {cur_from_prev, cur_from_prev * cur_from_ref_,
+  return {cur_from_prev, cur_from_prev * state_.cur_from_ref,
           ComposedCovariance(cur_from_prev,
                              covariance != nullptr ? *covariance : usual,
-                             cur_from_ref_, covariance_),
+                             state_.cur_from_ref, state_.covariance),
           covariance};
 }
 
 bool Odometry::Follow(const PreparedFrame& measured,
                       const std::optional<Prediction>& prediction,
                       TrackedFrame* result) {
-  aligned_ = AlignToLast(measured, prediction);
-  effort_ = aligned_.has_value() ? Effort::kQuick : Effort::kEverything;
+  state_.aligned = AlignToLast(measured, prediction);
+  state_.effort =
+      state_.aligned.has_value() ? Effort::kQuick : Effort::kEverything;
   const PreparedFrame* frame = Look(measured, prediction, result);
-  if (!is_lost_ && !IsTrusted(frame, *result)) {
+  if (!state_.is_lost && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
-  while (frame == nullptr && effort_ != Effort::kEverything) {
-    effort_ = effort_ == Effort::kQuick ? Effort::kPixels : Effort::kEverything;
+  while (frame == nullptr && state_.effort != Effort::kEverything) {
+    state_.effort =
+        state_.effort == Effort::kQuick ? Effort::kPixels : Effort::kEverything;
     frame = Look(measured, prediction, result);
   }
   if (frame != nullptr && attempts_.kept().needs_refinement) {
     // Pixels that confirm features start from where these were searched for.
-    const Rigid3d start = aligned_.value_or(Rigid3d()) * cur_from_ref_;
-    attempts_.Refine(*frame, *reference_, GuessOf(start), result);
-    shutter_tracking_.Update(attempts_.kept());
+    const Rigid3d start =
+        state_.aligned.value_or(Rigid3d()) * state_.cur_from_ref;
+    attempts_.Refine(*frame, *state_.reference, GuessOf(start), result);
+    state_.shutter_tracking.Update(attempts_.kept());
   }
   // A doubtful pose does not end the lost state.
-  if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
+  if (frame == nullptr ||
+      (state_.is_lost && result->status != TrackingStatus::kOk)) {
     return false;
   }
-  twist_ = frame->twist;
+  state_.twist = frame->twist;
   if (attempts_.kept().twist.has_value()) {
-    twist_covariance_ = attempts_.kept().twist_covariance;
+    state_.twist_covariance = attempts_.kept().twist_covariance;
   }
-  cur_from_prev_ =
-      is_lost_ ? Rigid3d()
-               : last_estimate().cur_from_prev * cur_from_ref_.Inverse();
-  if (!is_lost_ && interval_ > 0.0) {
-    timing_covariance_ =
-        TimingCovariance(measured, TwistOf(cur_from_prev_, interval_));
+  state_.cur_from_prev = state_.is_lost ? Rigid3d()
+                                        : last_estimate().cur_from_prev *
+                                              state_.cur_from_ref.Inverse();
+  if (!state_.is_lost && state_.interval > 0.0) {
+    state_.timing_covariance = TimingCovariance(
+        measured, TwistOf(state_.cur_from_prev, state_.interval));
   }
   TakeMotion(result);
-  if (has_shutter_) shutter_tracking_.Accept();
-  if (earlier_segment_.has_value()) ReturnToEarlierSegment(*frame, result);
+  if (state_.has_shutter) state_.shutter_tracking.Accept();
+  if (state_.earlier_segment.has_value())
+    ReturnToEarlierSegment(*frame, result);
   Accept(*frame, result);
   return true;
 }
 
 std::optional<Rigid3d> Odometry::AlignToLast(
     const PreparedFrame& frame, const std::optional<Prediction>& prediction) {
-  if (is_lost_ || is_doubtful_) return std::nullopt;
+  if (state_.is_lost || state_.is_doubtful) return std::nullopt;
   const Keyframe* last = nullptr;
-  if (last_.has_value()) {
-    last = &*last_;
-  } else if (reference_->id == num_frames_ - 2) {
-    last = reference_;
+  if (state_.last.has_value()) {
+    last = &*state_.last;
+  } else if (state_.reference->id == num_frames_ - 2) {
+    last = state_.reference;
   }
   if (last == nullptr) return std::nullopt;
   PreparedFrame seen = frame;
   seen.twist = last->frame.twist;
-  return tracker_->AlignCoarsely(
-      last->frame, seen,
-      prediction.has_value() ? prediction->cur_from_prev : cur_from_prev_);
+  return tracker_->AlignCoarsely(last->frame, seen,
+                                 prediction.has_value()
+                                     ? prediction->cur_from_prev
+                                     : state_.cur_from_prev);
 }
 
 // Tracks from where coarse images say that the camera is. Where they do not say
-// it, from the last pose, and only then from a constant velocity, which can lock
-// onto its own false motion.
+// it, from the last pose, and only then from a constant velocity, which can
+// lock onto its own false motion.
 const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                                     const std::optional<Prediction>& prediction,
                                     TrackedFrame* result) {
-  Rigid3d first = cur_from_ref_;
-  Rigid3d second = cur_from_prev_ * cur_from_ref_;
+  Rigid3d first = state_.cur_from_ref;
+  Rigid3d second = state_.cur_from_prev * state_.cur_from_ref;
   std::optional<Rigid3d> aligned;
-  if (aligned_.has_value()) aligned = *aligned_ * cur_from_ref_;
+  if (state_.aligned.has_value())
+    aligned = *state_.aligned * state_.cur_from_ref;
   const auto track = [&](const PreparedFrame& frame,
                          const VelocityPrior* velocity) {
     const auto from = [&](const Rigid3d& cur_from_ref) {
       TrackingGuess guess = GuessOf(cur_from_ref);
       guess.velocity = velocity;
-      guess.leaves_refinement = effort_ != Effort::kEverything;
+      guess.leaves_refinement = state_.effort != Effort::kEverything;
       return guess;
     };
     if (prediction.has_value()) {
@@ -279,28 +289,28 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
         guess.covariance = &prediction->covariance;
       }
       guess.search_at = aligned;
-      if (attempts_.Try(frame, *reference_, guess, result)) return true;
+      if (attempts_.Try(frame, *state_.reference, guess, result)) return true;
     }
     TrackingGuess start = from(first);
-    if (effort_ != Effort::kEverything) {
+    if (state_.effort != Effort::kEverything) {
       start.search_at = aligned;
-      start.is_tentative = effort_ == Effort::kQuick;
-      return attempts_.Try(frame, *reference_, start, result) &&
+      start.is_tentative = state_.effort == Effort::kQuick;
+      return attempts_.Try(frame, *state_.reference, start, result) &&
              !attempts_.kept().is_partial;
     }
     const TrackingGuess other = from(second);
     return attempts_.TryInTurn(
-        frame, *reference_, start, other,
+        frame, *state_.reference, start, other,
         [&](Rigid3d* cur_from_ref) {
           const StageTimer timer(&result->relocalise_ms);
-          return relocaliser_.FindIn(frame, reference_, cur_from_ref);
+          return relocaliser_.FindIn(frame, state_.reference, cur_from_ref);
         },
         result);
   };
-  if (!has_shutter_) {
+  if (!state_.has_shutter) {
     // A frame without a shutter among frames with one does not determine a
     // velocity, and the known velocity is older than this frame.
-    shutter_tracking_.Forget();
+    state_.shutter_tracking.Forget();
     return track(measured, nullptr) ? &measured : nullptr;
   }
   const auto track_again = [&](const PreparedFrame& frame,
@@ -309,46 +319,50 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     TrackingGuess guess = GuessOf(cur_from_ref);
     guess.velocity = &velocity;
     guess.leaves_refinement = true;
-    return attempts_.TryAgain(frame, *reference_, guess, result);
+    return attempts_.TryAgain(frame, *state_.reference, guess, result);
   };
   std::optional<Twist> twist;
-  if (prediction.has_value() && interval_ > 0.0) {
-    twist = TwistOf(prediction->cur_from_prev, interval_);
+  if (prediction.has_value() && state_.interval > 0.0) {
+    twist = TwistOf(prediction->cur_from_prev, state_.interval);
   }
   std::optional<Rigid3d> prev_from_ref;
-  if (!is_lost_) prev_from_ref = cur_from_ref_;
-  return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
-                                  reference_, attempts_.kept(), track,
-                                  track_again);
+  if (!state_.is_lost) prev_from_ref = state_.cur_from_ref;
+  return state_.shutter_tracking.Follow(measured, state_.interval,
+                                        prev_from_ref, twist, state_.reference,
+                                        attempts_.kept(), track, track_again);
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {
   const MotionEstimate& estimate = last_estimate();
-  cur_from_ref_ = estimate.cur_from_prev;
-  covariance_ = estimate.covariance;
-  if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
-  covariance_ += timing_covariance_ + reference_->timing_covariance;
-  result->cur_from_reference = cur_from_ref_;
+  state_.cur_from_ref = estimate.cur_from_prev;
+  state_.covariance = estimate.covariance;
+  if (!attempts_.kept().twist.has_value())
+    state_.covariance += state_.twist_covariance;
+  state_.covariance +=
+      state_.timing_covariance + state_.reference->timing_covariance;
+  result->cur_from_reference = state_.cur_from_ref;
   if (!HasMotion(estimate)) return;
-  result->edges.insert(result->edges.begin(), {reference_->id, result->index,
-                                               cur_from_ref_, covariance_});
+  result->edges.insert(result->edges.begin(),
+                       {state_.reference->id, result->index,
+                        state_.cur_from_ref, state_.covariance});
 }
 
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
-  is_lost_ = false;
-  is_unconnected_ = false;
-  tracker_->OnAccepted(reference_->reference.get(), attempts_.mutable_kept());
+  state_.is_lost = false;
+  state_.is_unconnected = false;
+  tracker_->OnAccepted(state_.reference->reference.get(),
+                       attempts_.mutable_kept());
   if (!NeedsNewReference()) return;
   const Rigid3d world_from_cam = WorldFromCam();
-  OdometryKeyframe* const earlier =
-      keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
-                             kMaxReturnFlow * options_.max_flow_px, reference_);
+  OdometryKeyframe* const earlier = keyframes_.FindNearest(
+      world_from_cam, state_.segment, kMinReturnShare,
+      kMaxReturnFlow * options_.max_flow_px, state_.reference);
   if (earlier != nullptr &&
       attempts_.TryFallback(
           frame, *earlier,
           GuessOf(world_from_cam.Inverse() * earlier->world_from_cam), result,
           [&] { return !NeedsNewReference(); })) {
-    reference_ = earlier;
+    state_.reference = earlier;
     TakeMotion(result);
     return;
   }
@@ -367,21 +381,28 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
                              TrackedFrame* result) {
   const StageTimer timer(&result->reference_ms);
   const bool is_lost = result->status == TrackingStatus::kLost;
-  const bool was_tracked = reference_ != nullptr && !is_lost;
+  const bool was_tracked = state_.reference != nullptr && !is_lost;
   std::string why_not;
-  MotionMatrix covariance = timing_covariance_;
-  if (frame.twist.has_value()) covariance += twist_covariance_;
-  OdometryKeyframe* const added = AddKeyframe(
-      {result->index, segment_, world_from_cam, frame, {}, {}, covariance},
-      was_tracked ? reference_->reference.get() : nullptr, nullptr, &why_not);
+  MotionMatrix covariance = state_.timing_covariance;
+  if (frame.twist.has_value()) covariance += state_.twist_covariance;
+  OdometryKeyframe* const added =
+      AddKeyframe({result->index,
+                   state_.segment,
+                   world_from_cam,
+                   frame,
+                   {},
+                   {},
+                   covariance},
+                  was_tracked ? state_.reference->reference.get() : nullptr,
+                  nullptr, &why_not);
   if (added == nullptr) {
     if (is_lost) result->reason = why_not;
     return false;
   }
-  reference_ = added;
-  if (has_shutter_) shutter_tracking_.AddReference(*added);
-  cur_from_ref_ = Rigid3d();
-  covariance_.setZero();
+  state_.reference = added;
+  if (state_.has_shutter) state_.shutter_tracking.AddReference(*added);
+  state_.cur_from_ref = Rigid3d();
+  state_.covariance.setZero();
   result->is_reference = true;
   return true;
 }
@@ -403,22 +424,22 @@ bool Odometry::InsertKeyframe(const Keyframe& inserted) {
   if (keyframe == nullptr) {
     std::string why_not;
     Keyframe added = inserted;
-    added.segment = segment_;
+    added.segment = state_.segment;
     added.frame = inserted.Unpacked();
     added.images = {};
-    return AddKeyframe(std::move(added), nullptr, reference_, &why_not) !=
+    return AddKeyframe(std::move(added), nullptr, state_.reference, &why_not) !=
            nullptr;
   }
-  if (keyframe == reference_) return true;
+  if (keyframe == state_.reference) return true;
   keyframe->world_from_cam = inserted.world_from_cam;
-  keyframe->segment = segment_;
+  keyframe->segment = state_.segment;
   keyframes_.Renew(keyframe);
   return true;
 }
 
 Rigid3d Odometry::WorldFromCam() const {
-  if (reference_ == nullptr) return Rigid3d();
-  return reference_->world_from_cam * cur_from_ref_.Inverse();
+  if (state_.reference == nullptr) return Rigid3d();
+  return state_.reference->world_from_cam * state_.cur_from_ref.Inverse();
 }
 
 }  // namespace rgbd_pose

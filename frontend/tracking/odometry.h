@@ -124,7 +124,7 @@ class Odometry {
 
   // The velocity of the last frame if it was tracked and its rows were exposed
   // at different times; see Frame::twist.
-  const std::optional<Twist>& last_twist() const { return twist_; }
+  const std::optional<Twist>& last_twist() const { return state_.twist; }
 
  private:
   // The pose predicted from a motion guess.
@@ -138,6 +138,13 @@ class Odometry {
   // pixels as well, if these are too few; from other starts and by descriptors.
   enum class Effort { kQuick, kPixels, kEverything };
 
+  // The end of a segment.
+  struct EarlierSegment {
+    int reference = -1;    // its last reference
+    Rigid3d cur_from_ref;  // of its last pose
+    double left_at = 0.0;  // time stamp of the first new frame, s
+  };
+
   // Covariance of the motion due to the uncertain capture time at `twist`.
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
 
@@ -146,17 +153,17 @@ class Odometry {
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
   TrackingGuess GuessOf(const Rigid3d& cur_from_ref) const {
-    return {cur_from_ref, aligns_depth_};
+    return {cur_from_ref, state_.aligns_depth};
   }
   bool Follow(const PreparedFrame& frame,
               const std::optional<Prediction>& prediction,
               TrackedFrame* result);
-  // Returns the motion since the last frame by coarse images; nothing if they do
-  // not determine it.
+  // Returns the motion since the last frame by coarse images; nothing if they
+  // do not determine it.
   std::optional<Rigid3d> AlignToLast(
       const PreparedFrame& frame, const std::optional<Prediction>& prediction);
-  // Tracks a frame against reference_. Returns it as tracked, or null if lost.
-  // The refinement is left to Follow.
+  // Tracks a frame against state_.reference. Returns it as tracked, or null if
+  // lost. The refinement is left to Follow.
   const PreparedFrame* Look(const PreparedFrame& frame,
                             const std::optional<Prediction>& prediction,
                             TrackedFrame* result);
@@ -179,10 +186,11 @@ class Odometry {
   // Searches for a frame of a new segment in the previous one; continues there.
   void ReturnToEarlierSegment(const PreparedFrame& frame, TrackedFrame* result);
 
-  // Sets the pose from the motion found since reference_. Adds the motion as
-  // the first edge of the result.
+  // Sets the pose from the motion found since state_.reference. Adds the motion
+  // as the first edge of the result.
   void TakeMotion(TrackedFrame* result);
-  // Updates the state after tracking against reference_, which may change.
+  // Updates the state after tracking against state_.reference, which may
+  // change.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
   bool NeedsNewReference() const;
   // Returns null, and why, if the frame cannot be a reference. `last`: against
@@ -194,43 +202,54 @@ class Odometry {
   bool TakeReference(const PreparedFrame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);
 
+  // What is known when a frame has been tracked, for the next one. An attempt
+  // is taken back by assigning the state before it.
+  struct State {
+    explicit State(const Tracker* tracker) : shutter_tracking(tracker) {}
+
+    // The last frame.
+    double timestamp = 0.0;      // s
+    double interval = 0.0;       // since the frame before, s
+    bool has_shutter = false;    // see HasShutter
+    bool aligns_depth = true;    // see TrackingGuess
+    std::optional<Twist> twist;  // see last_twist
+    MotionMatrix twist_covariance = MotionMatrix::Zero();   // TrackingResult
+    MotionMatrix timing_covariance = MotionMatrix::Zero();  // of capture time
+
+    // Its motion.
+    OdometryKeyframe* reference = nullptr;  // null: none yet
+    Rigid3d cur_from_ref;
+    MotionMatrix covariance = MotionMatrix::Zero();  // of cur_from_ref
+    Rigid3d cur_from_prev;                           // between the last two
+    std::optional<Rigid3d> aligned;  // the same by coarse images
+    Effort effort = Effort::kQuick;
+    // The last frame, to become a keyframe, if it was tracked and is none.
+    std::optional<Keyframe> last;
+
+    // The camera.
+    ShutterTracking shutter_tracking;
+    StampJitter stamp_jitter;  // of depth
+    // The 90 % quantile of TrackingResult::covariance_factor.
+    double usual_inflation = 4.0;
+
+    // Whether and where it was lost.
+    bool is_lost = false;
+    bool is_doubtful = false;     // something moved in the last frame
+    bool is_unconnected = false;  // the last frame started a segment
+    bool is_predicted = false;    // see TrackedFrame
+    int segment = 0;
+    int latest_segment = 0;
+    // The end of the previous segment, as long as it is searched for.
+    std::optional<EarlierSegment> earlier_segment;
+  };
+
   OdometryOptions options_;
   std::unique_ptr<Tracker> tracker_;
   Keyframes keyframes_;
   Relocaliser relocaliser_;
   TrackingAttempts attempts_;  // at the last frame
-  ShutterTracking shutter_tracking_;
-  bool has_shutter_ = false;                               // of the last frame
-  std::optional<Twist> twist_;                             // see last_twist
-  MotionMatrix twist_covariance_ = MotionMatrix::Zero();   // see TrackingResult
-  MotionMatrix timing_covariance_ = MotionMatrix::Zero();  // of capture time
-  bool aligns_depth_ = true;                               // see TrackingGuess
-  OdometryKeyframe* reference_ = nullptr;                  // null: none yet
+  State state_;
   int num_frames_ = 0;
-  Rigid3d cur_from_ref_;                            // of the last frame
-  MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
-  Rigid3d cur_from_prev_;                           // between the last two
-  double timestamp_ = 0.0;                          // of the last frame, s
-  double interval_ = 0.0;                           // since the frame before, s
-  StampJitter stamp_jitter_;                        // of depth
-  // The last frame, to become a keyframe, if it was tracked and is none.
-  std::optional<Keyframe> last_;
-  std::optional<Rigid3d> aligned_;  // see AlignToLast
-  Effort effort_ = Effort::kQuick;
-  int segment_ = 0;
-  int latest_segment_ = 0;
-  // The end of the previous segment, as long as it is searched for.
-  struct EarlierSegment {
-    int reference = -1;    // its last reference
-    Rigid3d cur_from_ref;  // of its last pose
-    double left_at = 0.0;  // time stamp of the first new frame, s
-  };
-  std::optional<EarlierSegment> earlier_segment_;
-  double usual_inflation_ = 4.0;  // 90 % quantile of the covariance_factor
-  bool is_lost_ = false;
-  bool is_doubtful_ = false;     // something moved in the last frame
-  bool is_unconnected_ = false;  // the last frame started a segment
-  bool is_predicted_ = false;    // see TrackedFrame
 };
 
 }  // namespace rgbd_pose

@@ -26,10 +26,7 @@ bool Odometry::IsTrusted(const PreparedFrame* frame,
 const PreparedFrame* Odometry::LookFromLast(
     const PreparedFrame& measured, const std::optional<Prediction>& prediction,
     const PreparedFrame* found, TrackedFrame* result) {
-  OdometryKeyframe* const reference = reference_;
-  const Rigid3d cur_from_ref = cur_from_ref_;
-  const MotionMatrix covariance = covariance_;
-  const ShutterTracking shutter_tracking = shutter_tracking_;
+  const State before = state_;
   const TrackingResult kept = attempts_.kept();
   if (!MakeLastReference(result)) return found;
   TrackedFrame from_last = *result;
@@ -51,27 +48,24 @@ const PreparedFrame* Odometry::LookFromLast(
     *result = from_last;
     return frame;
   }
-  reference_ = reference;
-  cur_from_ref_ = cur_from_ref;
-  covariance_ = covariance;
-  shutter_tracking_ = shutter_tracking;
+  state_ = before;
   attempts_.Restore(kept);
   return found;
 }
 
 bool Odometry::MakeLastReference(TrackedFrame* result) {
-  if (!last_.has_value()) return false;
+  if (!state_.last.has_value()) return false;
   const StageTimer timer(&result->reference_ms);
   std::string why_not;
   OdometryKeyframe* const added =
-      AddKeyframe(*last_, nullptr, reference_, &why_not);
+      AddKeyframe(*state_.last, nullptr, state_.reference, &why_not);
   if (added == nullptr) return false;
-  reference_ = added;
-  shutter_tracking_.AddReference(*added);
+  state_.reference = added;
+  state_.shutter_tracking.AddReference(*added);
   result->previous_is_reference = true;
-  last_.reset();
-  cur_from_ref_ = Rigid3d();
-  covariance_.setZero();
+  state_.last.reset();
+  state_.cur_from_ref = Rigid3d();
+  state_.covariance.setZero();
   return true;
 }
 
@@ -79,32 +73,33 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   std::optional<Relocalisation> place;
   {
     const StageTimer timer(&result->relocalise_ms);
-    place = relocaliser_.Find(frame, keyframes_.Before(latest_segment_ + 1));
+    place =
+        relocaliser_.Find(frame, keyframes_.Before(state_.latest_segment + 1));
   }
   if (!place.has_value()) return false;
   OdometryKeyframe* keyframe = keyframes_.Find(place->keyframe);
   TrackingGuess guess = GuessOf(place->cur_from_keyframe);
-  const VelocityPrior velocity = shutter_tracking_.velocity()->Prior(
-      std::nullopt, interval_, frame.color_shutter.offset);
-  if (has_shutter_ && interval_ > 0.0) guess.velocity = &velocity;
+  const VelocityPrior velocity = state_.shutter_tracking.velocity()->Prior(
+      std::nullopt, state_.interval, frame.color_shutter.offset);
+  if (state_.has_shutter && state_.interval > 0.0) guess.velocity = &velocity;
   if (!attempts_.Try(frame, *keyframe, guess, result) ||
       result->status != TrackingStatus::kOk) {
     return false;
   }
   // Another reference was waiting for a velocity.
-  shutter_tracking_.HandleLost();
-  twist_ = attempts_.kept().twist;
-  if (twist_.has_value()) {
-    shutter_tracking_.velocity()->Add(*twist_, frame.timestamp,
-                                      frame.color_shutter.offset);
+  state_.shutter_tracking.HandleLost();
+  state_.twist = attempts_.kept().twist;
+  if (state_.twist.has_value()) {
+    state_.shutter_tracking.velocity()->Add(*state_.twist, frame.timestamp,
+                                            frame.color_shutter.offset);
   }
-  reference_ = keyframe;
-  if (segment_ != keyframe->segment) earlier_segment_.reset();
-  segment_ = keyframe->segment;
+  state_.reference = keyframe;
+  if (state_.segment != keyframe->segment) state_.earlier_segment.reset();
+  state_.segment = keyframe->segment;
   TakeMotion(result);
-  cur_from_prev_ = Rigid3d();
+  state_.cur_from_prev = Rigid3d();
   result->relocalised = true;
-  Accept(frame.WithTwist(twist_), result);
+  Accept(frame.WithTwist(state_.twist), result);
   return true;
 }
 
@@ -112,70 +107,75 @@ void Odometry::HandleLost(const PreparedFrame& frame,
                           const std::optional<Prediction>& prediction,
                           TrackedFrame* result) {
   // After one lost frame without a guess, the motion since the loss is unknown.
-  is_predicted_ = prediction.has_value() && (is_predicted_ || !is_lost_);
+  state_.is_predicted =
+      prediction.has_value() && (state_.is_predicted || !state_.is_lost);
   // A new segment is best placed where the camera was heading.
   const Rigid3d moved_on =
-      (is_lost_ ? Rigid3d() : cur_from_prev_) * cur_from_ref_;
-  is_lost_ = true;
-  shutter_tracking_.HandleLost();
+      (state_.is_lost ? Rigid3d() : state_.cur_from_prev) * state_.cur_from_ref;
+  state_.is_lost = true;
+  state_.shutter_tracking.HandleLost();
   result->status = TrackingStatus::kLost;
-  result->is_predicted = is_predicted_;
+  result->is_predicted = state_.is_predicted;
   if (prediction.has_value()) {
-    cur_from_prev_ = prediction->cur_from_prev;
-    cur_from_ref_ = prediction->cur_from_ref;
-    covariance_ = prediction->covariance;
+    state_.cur_from_prev = prediction->cur_from_prev;
+    state_.cur_from_ref = prediction->cur_from_ref;
+    state_.covariance = prediction->covariance;
   } else if (options_.on_lost == LostPolicy::kPredict) {
-    cur_from_ref_ = cur_from_prev_ * cur_from_ref_;
+    state_.cur_from_ref = state_.cur_from_prev * state_.cur_from_ref;
   } else {
-    cur_from_prev_ = Rigid3d();
+    state_.cur_from_prev = Rigid3d();
   }
-  if (is_predicted_) {
-    result->edges = {
-        {reference_->id, result->index, cur_from_ref_, covariance_}};
+  if (state_.is_predicted) {
+    result->edges = {{state_.reference->id, result->index, state_.cur_from_ref,
+                      state_.covariance}};
   }
   if (options_.on_lost != LostPolicy::kNewSegment) return;
-  const Rigid3d& start = prediction.has_value() ? cur_from_ref_ : moved_on;
-  StartSegment(frame, reference_->world_from_cam * start.Inverse(), result);
+  const Rigid3d& start =
+      prediction.has_value() ? state_.cur_from_ref : moved_on;
+  StartSegment(frame, state_.reference->world_from_cam * start.Inverse(),
+               result);
 }
 
 void Odometry::StartSegment(const PreparedFrame& frame,
                             const Rigid3d& world_from_cam,
                             TrackedFrame* result) {
-  const EarlierSegment earlier = {reference_->id, cur_from_ref_,
+  const EarlierSegment earlier = {state_.reference->id, state_.cur_from_ref,
                                   frame.timestamp};
-  const int before = segment_;
-  segment_ = latest_segment_ + 1;
+  const int before = state_.segment;
+  state_.segment = state_.latest_segment + 1;
   if (!TakeReference(frame, world_from_cam, result)) {
-    segment_ = before;
+    state_.segment = before;
     return;
   }
-  latest_segment_ = segment_;
-  if (!earlier_segment_.has_value()) earlier_segment_ = earlier;
-  is_lost_ = false;
+  state_.latest_segment = state_.segment;
+  if (!state_.earlier_segment.has_value()) state_.earlier_segment = earlier;
+  state_.is_lost = false;
   result->reference = -1;
   // The relation of two segments that start in a row is unknown: stay lost.
-  if (!is_unconnected_) {
+  if (!state_.is_unconnected) {
     result->status = TrackingStatus::kDegraded;
     result->reason =
         std::string("new segment: the motion since the previous frame is ") +
-        (is_predicted_ ? "only predicted" : "unknown");
+        (state_.is_predicted ? "only predicted" : "unknown");
   }
-  is_unconnected_ = true;
+  state_.is_unconnected = true;
 }
 
 void Odometry::ReturnToEarlierSegment(const PreparedFrame& frame,
                                       TrackedFrame* result) {
-  if (frame.timestamp - earlier_segment_->left_at >
+  if (frame.timestamp - state_.earlier_segment->left_at >
       options_.new_segment_after) {
-    earlier_segment_.reset();
+    state_.earlier_segment.reset();
     return;
   }
-  OdometryKeyframe* found = keyframes_.Find(earlier_segment_->reference);
+  OdometryKeyframe* found = keyframes_.Find(state_.earlier_segment->reference);
   if (found == nullptr ||
       !attempts_.TryFallback(frame, *found,
-                             GuessOf(earlier_segment_->cur_from_ref), result)) {
+                             GuessOf(state_.earlier_segment->cur_from_ref),
+                             result)) {
     const StageTimer timer(&result->relocalise_ms);
-    const auto place = relocaliser_.Find(frame, keyframes_.Before(segment_));
+    const auto place =
+        relocaliser_.Find(frame, keyframes_.Before(state_.segment));
     if (!place.has_value()) return;
     found = keyframes_.Find(place->keyframe);
     if (!attempts_.TryFallback(frame, *found, GuessOf(place->cur_from_keyframe),
@@ -183,10 +183,10 @@ void Odometry::ReturnToEarlierSegment(const PreparedFrame& frame,
       return;
     }
   }
-  reference_ = found;
-  segment_ = found->segment;
+  state_.reference = found;
+  state_.segment = found->segment;
   result->relocalised = true;
-  earlier_segment_.reset();
+  state_.earlier_segment.reset();
   TakeMotion(result);
 }
 

@@ -66,7 +66,8 @@ const PreparedFrame* ShutterTracking::Follow(
     Update(tracked);
   };
   look();
-  for (int round = 0; round < kMaxRounds && found_.between.has_value(); ++round) {
+  for (int round = 0; round < kMaxRounds && found_.between.has_value();
+       ++round) {
     if (!MoveReference(*found_.between, interval, reference)) break;
     prior = velocity_.Prior(prev_from_ref, interval, middle);
     const Rigid3d found = tracked.estimate.cur_from_prev;

@@ -35,9 +35,9 @@ class ShutterTracking {
   using Track = std::function<bool(const PreparedFrame& frame,
                                    const VelocityPrior* prior)>;
   // Corrects its motion after the reference has moved.
-  using TrackAgain = std::function<bool(
-      const PreparedFrame& frame, const VelocityPrior& prior,
-      const Rigid3d& cur_from_ref)>;
+  using TrackAgain =
+      std::function<bool(const PreparedFrame& frame, const VelocityPrior& prior,
+                         const Rigid3d& cur_from_ref)>;
 
   // `tracker` must outlive this object.
   explicit ShutterTracking(const Tracker* tracker) : tracker_(tracker) {}

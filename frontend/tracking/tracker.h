@@ -79,7 +79,8 @@ struct TrackingGuess {
   // The start of the solver and the mean of priors.
   Rigid3d cur_from_ref;
 
-  // Where features are searched for, if coarse images have been aligned already.
+  // Where features are searched for, if coarse images have been aligned
+  // already.
   std::optional<Rigid3d> search_at;
 
   // Becomes the prior of costs that have one; null: unknown.
@@ -194,8 +195,8 @@ class Tracker {
       const PreparedFrame& frame, const Reference* last,
       const TrackingResult* tracked, std::string* why_not) = 0;
 
-  // Moves what a reference keeps of its frame: the velocity of the frame is known
-  // better now. `reference_from_stamp`: see FrameView.
+  // Moves what a reference keeps of its frame: the velocity of the frame is
+  // known better now. `reference_from_stamp`: see FrameView.
   virtual void MoveReference(const PreparedFrame& frame,
                              const Rigid3d& reference_from_stamp,
                              Reference* reference) const = 0;
@@ -212,8 +213,9 @@ class Tracker {
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
                      const TrackingGuess& guess, TrackingResult* tracked) = 0;
 
-  // Corrects `tracked`, the result of Track, after the reference has moved. What
-  // was found in the frame, with the velocity of `frame`, is not searched again.
+  // Corrects `tracked`, the result of Track, after the reference has moved.
+  // What was found in the frame, with the velocity of `frame`, is not searched
+  // again.
   virtual void TrackAgain(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess,
