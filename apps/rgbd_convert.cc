@@ -3,6 +3,7 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
+#include <string>
 
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
@@ -25,6 +26,11 @@ ProgramInfo Info(SequenceSettings* settings) {
       "rgbd_convert --dataset=scene0000_00 --output=scene_tum",
       {{"Run", {"output", "threads"}}},
       {SettingTable(settings)}};
+}
+
+std::string SaidOfImu(const WrittenSequence& written) {
+  if (written.imu_samples == 0) return "";
+  return ", with " + std::to_string(written.imu_samples) + " inertial samples";
 }
 
 int Main(const SequenceSettings& settings, const ProgramInfo& info) {
@@ -52,8 +58,9 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
   }
   Warn(DroppedFrames(source, written.damaged));
   Warn({written.remark});
-  std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), written.frames,
-              sequence.GroundTruth() == nullptr ? "" : ", with ground truth");
+  std::printf("%s: %d frames%s%s\n", FLAGS_output.c_str(), written.frames,
+              sequence.GroundTruth() == nullptr ? "" : ", with ground truth",
+              SaidOfImu(written).c_str());
   if (!written.stopped.empty()) {
     std::fprintf(stderr, "%s: stopped after %d frames (%s); they are in %s\n",
                  info.name.c_str(), written.frames, written.stopped.c_str(),

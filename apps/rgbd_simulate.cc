@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/shell/program.h"
@@ -15,6 +17,7 @@
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_scene.h"
+#include "frontend/sources/imu_beside.h"
 #include "frontend/sources/tum_writer.h"
 
 namespace rgbd_pose {
@@ -22,6 +25,10 @@ namespace {
 
 struct SimulateSettings {
   SyntheticOptions options;
+  bool imu = false;
+  SyntheticImuOptions imu_options;
+  double imu_gyro_bias = 0.0;       // rad/s, of each axis
+  double imu_accel_bias = 0.0;      // m/s^2, of each axis
   double registration_shift = 0.0;  // m
   double registration_turn = 0.0;   // degrees
   std::string camera = "ros_default", depth_camera, output;
@@ -29,6 +36,8 @@ struct SimulateSettings {
 
 std::vector<Setting> Table(SimulateSettings* settings) {
   constexpr std::string_view kGroup = "Sequence";
+  constexpr std::string_view kImu = "Inertial sensor";
+  SyntheticImuOptions* imu = &settings->imu_options;
   SyntheticOptions* options = &settings->options;
   return {
       {"scene", kGroup, "scene to render", &options->scene, SceneNames()},
@@ -90,6 +99,19 @@ std::vector<Setting> Table(SimulateSettings* settings) {
        "which camera of a Kalibr file (--camera) takes the depth images, which "
        "are not registered to colour then; empty: the same one",
        &settings->depth_camera},
+      {"imu", kImu,
+       "write the samples of an inertial sensor beside the camera; mounting, "
+       "delay and noise are those of the camera file, if it says them",
+       &settings->imu},
+      {"imu_rate", kImu, "samples per second", &imu->rate_hz},
+      {"imu_noise", kImu, "add white noise, and let the biases walk",
+       &imu->noise},
+      {"imu_gyro_bias", kImu,
+       "bias of each axis of the gyroscope at the start (rad/s)",
+       &settings->imu_gyro_bias},
+      {"imu_accel_bias", kImu,
+       "bias of each axis of the accelerometer at the start (m/s^2)",
+       &settings->imu_accel_bias},
       {"output", "Output", "folder to create, in TUM RGB-D layout",
        &settings->output},
   };
@@ -103,6 +125,24 @@ ProgramInfo Info(SimulateSettings* settings) {
           {Table(settings)}};
 }
 
+// The sequence, with its inertial sensor if there shall be one.
+std::unique_ptr<FrameSource> Simulate(const SimulateSettings& settings,
+                                      const SyntheticOptions& options,
+                                      const ImuCalibration& calibration) {
+  auto dataset = std::make_unique<SyntheticDataset>(options);
+  if (!settings.imu) return dataset;
+  SyntheticImuOptions imu = settings.imu_options;
+  imu.cam_from_imu = calibration.cam_from_imu.value_or(imu.cam_from_imu);
+  imu.delay_s = calibration.delay_s.value_or(imu.delay_s);
+  imu.densities = calibration.noise.value_or(imu.densities);
+  imu.bias << Eigen::Vector3d::Constant(settings.imu_gyro_bias),
+      Eigen::Vector3d::Constant(settings.imu_accel_bias);
+  imu.seed = options.seed;
+  const std::vector<ImuSample> samples = dataset->SimulateImu(imu);
+  return WithImu(std::move(dataset), samples,
+                 {{imu.cam_from_imu, imu.delay_s, imu.densities}, true});
+}
+
 int Main(const SimulateSettings& settings, const ProgramInfo& info) {
   RequireFlag("output", settings.output);
   SyntheticOptions options = settings.options;
@@ -114,21 +154,23 @@ int Main(const SimulateSettings& settings, const ProgramInfo& info) {
   Warn({setup.remark});
   options.camera = RegisteredCamera(setup);
   options.depth_camera = setup.depth_camera;
-  SyntheticDataset dataset(options);
+  const std::unique_ptr<FrameSource> source =
+      Simulate(settings, options, setup.imu);
   const StopSignal signal;
   WrittenSequence written;
   {
-    ProgressBar bar("rendering", dataset.size());
+    ProgressBar bar("rendering", options.frames);
     TumWriterOptions writer;
     writer.threads = AvailableCores();
     writer.truth_noise = {0.0, 0.0, "rendered"};
     writer.progress = [&bar](int done) { bar.Update(done); };
     writer.stop = [&signal] { return signal.name(); };
-    written = WriteTumSequence(&dataset, settings.output, writer);
+    written = WriteTumSequence(source.get(), settings.output, writer);
   }
-  std::printf("%s: %d frames of path %s in scene %s, with ground truth\n",
+  std::printf("%s: %d frames of path %s in scene %s, with ground truth%s\n",
               settings.output.c_str(), written.frames, options.path.c_str(),
-              options.scene.c_str());
+              options.scene.c_str(),
+              settings.imu ? " and inertial samples" : "");
   if (written.stopped.empty()) return kExitOk;
   std::fprintf(stderr, "%s: stopped after %d frames (%s); they are in %s\n",
                info.name.c_str(), written.frames, written.stopped.c_str(),

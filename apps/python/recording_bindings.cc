@@ -93,6 +93,17 @@ class Recording {
     return frame->read();
   }
 
+  // All inertial samples, by a reading of its own. Call it without the GIL.
+  std::vector<ImuSample> ReadImu() const {
+    std::vector<ImuSample> samples;
+    if (!source_->imu().has_value()) return samples;
+    const std::shared_ptr<FrameSource> source = open_();
+    while (const std::optional<RgbdFrame> frame = source->Next()) {
+      samples.insert(samples.end(), frame->imu.begin(), frame->imu.end());
+    }
+    return samples;
+  }
+
  private:
   std::function<std::shared_ptr<FrameSource>()> open_;
   std::shared_ptr<FrameSource> source_;
@@ -119,7 +130,8 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
                         const std::string& source, const std::string& frames,
                         const py::object& associations,
                         const std::string& depth_camera, double depth_scale,
-                        const std::vector<std::string>& topics) {
+                        const std::vector<std::string>& topics,
+                        const py::object& imu) {
   SourceOptions options;
   options.path = PathFrom(path);
   if (!associations.is_none()) {
@@ -138,9 +150,45 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
   }
   options.depth_scale = depth_scale;
   options.topics = topics;
+  if (!imu.is_none()) options.imu = PathFrom(imu);
   return Recording([options, source, range = ParseFrameRange(frames)] {
     return PartOf(OpenSource(source, options), range);
   });
+}
+
+py::array ImuSamplesOf(const Recording& recording) {
+  std::vector<ImuSample> samples;
+  {
+    const ReleasedGil no_gil;
+    samples = recording.ReadImu();
+  }
+  RowMajorMatrix rows(samples.size(), 7);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    rows.row(i) << samples[i].stamp, samples[i].gyro.transpose(),
+        samples[i].accel.transpose();
+  }
+  return ArrayFromMatrix(rows);
+}
+
+py::object ImuCalibrationOf(const Recording& recording) {
+  const std::optional<ImuSensor> sensor = recording.source().imu();
+  if (!sensor.has_value()) return py::none();
+  const auto& [cam_from_imu, delay, noise] = sensor->calibration;
+  py::dict result;
+  result["has_gyro"] = sensor->has_gyro;
+  result["cam_from_imu"] = py::none();
+  if (cam_from_imu) result["cam_from_imu"] = ToPython(*cam_from_imu);
+  result["delay"] = delay;
+  result["noise"] = py::none();
+  if (noise.has_value()) {
+    py::dict values;
+    values["gyro"] = noise->gyro_density;
+    values["accel"] = noise->accel_density;
+    values["gyro_walk"] = noise->gyro_walk;
+    values["accel_walk"] = noise->accel_walk;
+    result["noise"] = values;
+  }
+  return result;
 }
 
 // A getter for an image: a read-only view, which keeps the frame alive.
@@ -211,15 +259,20 @@ associations: file that pairs colour and depth images (TUM).
 depth_camera: the camera of a Kalibr file that took the depth images, which are
     registered to colour then.
 depth_scale: raw depth units per metre; 0: from the camera or the recording.
-topics: of a bag: colour, depth[, camera_info]; empty: chosen by their types.
+topics: of a bag: colour, depth[, camera_info], inertial sensor; those that are
+    not given are chosen by their types.
+imu: file that says mounting, delay or noise of the inertial sensor (Kalibr's);
+    None: what the camera file and the recording say; "none": its samples are
+    not read.
 
 Raises InputError for unreadable input.)");
-  recording.def(
-      py::init(&OpenRecording), "Raises InputError for unreadable input.",
-      py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),
-      py::arg("source") = "auto", py::arg("frames") = "",
-      py::arg("associations") = py::none(), py::arg("depth_camera") = "",
-      py::arg("depth_scale") = 0.0, py::arg("topics") = py::tuple());
+  recording.def(py::init(&OpenRecording),
+                "Raises InputError for unreadable input.", py::arg("path"),
+                py::arg("camera") = py::none(), py::kw_only(),
+                py::arg("source") = "auto", py::arg("frames") = "",
+                py::arg("associations") = py::none(),
+                py::arg("depth_camera") = "", py::arg("depth_scale") = 0.0,
+                py::arg("topics") = py::tuple(), py::arg("imu") = py::none());
   recording.def("__iter__", [](Recording* self) -> py::iterator {
     const py::cpp_function next(
         [source = self->Begin(), mutex = self->mutex()] {
@@ -260,6 +313,17 @@ Raises InputError for unreadable input.)");
       },
       "(timestamps (N,), world_from_cam (N, 4, 4)) of the recording; for a bag "
       "what has been read so far");
+  recording.def("imu", &ImuSamplesOf,
+                "(N, 7) of the inertial sensor, in its axes and with its "
+                "stamps: stamp (s), angular velocity (rad/s), acceleration as "
+                "it is measured (m/s^2); N = 0 without a sensor. Reads the "
+                "whole recording without its images.");
+  recording.def("imu_calibration", &ImuCalibrationOf,
+                "dict of what is known of the inertial sensor, None without "
+                "one: has_gyro, cam_from_imu (4, 4) or None, delay (s, of its "
+                "stamps after the camera's) or None, noise or None: dict of "
+                "densities gyro, accel (rad/s, m/s^2 per sqrt(Hz)) and walks "
+                "gyro_walk, accel_walk.");
 }
 
 }  // namespace

@@ -37,15 +37,18 @@ std::optional<Camera> ReadCamera(BagReader* bag, const std::string& info_topic,
                       bag->path() + ": " + info_topic);
 }
 
-// The stream of an image topic of the RealSense viewer: X of X/image/data with
-// X = /device_0/sensor_0/Depth_0. Empty for other topics.
+// The stream of a topic of the RealSense viewer: X of X/image/data or
+// X/imu/data with X = /device_0/sensor_0/Depth_0. Empty for other topics.
 std::string ViewerStreamOf(const std::string& topic) {
-  const std::string ending = "/image/data";
-  if (topic.rfind("/device_", 0) != 0 || topic.size() < ending.size() ||
-      topic.compare(topic.size() - ending.size(), ending.size(), ending) != 0) {
-    return "";
+  if (topic.rfind("/device_", 0) != 0) return "";
+  for (const std::string ending : {"/image/data", "/imu/data"}) {
+    if (topic.size() >= ending.size() &&
+        topic.compare(topic.size() - ending.size(), ending.size(), ending) ==
+            0) {
+      return topic.substr(0, topic.size() - ending.size());
+    }
   }
-  return topic.substr(0, topic.size() - ending.size());
+  return "";
 }
 
 // Raw units per metre, from the inverse that the viewer records as an option.
@@ -68,9 +71,9 @@ std::optional<double> ViewerDepthScale(BagReader* bag,
 
 // stream_from_reference of the viewer's topics .../tf/REFERENCE, by reference.
 std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag,
-                                                const std::string& image) {
+                                                const std::string& topic_name) {
   std::map<std::string, Rigid3d> transforms;
-  const std::string stream = ViewerStreamOf(image);
+  const std::string stream = ViewerStreamOf(topic_name);
   if (stream.empty()) return transforms;
   const std::string prefix = stream + "/tf/";
   for (const BagTopic& topic : bag->topics()) {
@@ -107,20 +110,25 @@ void CropAndBin(const RosCameraInfo& info, Camera* camera) {
   camera->cy = (camera->cy - info.y_offset + 0.5) / bin_y - 0.5;
 }
 
-// color_from_depth; nothing if depth is registered to colour.
-std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
-                                      const ImageTraits& color,
-                                      const ImageTraits& depth,
-                                      bool has_camera) {
-  const auto of_color = ViewerTransforms(bag, topics.color);
+// color_from_other between two topics of the RealSense viewer; nothing for
+// other topics.
+std::optional<Rigid3d> ColorFromViewer(BagReader* bag,
+                                       const std::string& color_topic,
+                                       const std::string& other_topic) {
+  const auto of_color = ViewerTransforms(bag, color_topic);
   for (const auto& [reference, transform] :
-       ViewerTransforms(bag, topics.depth)) {
+       ViewerTransforms(bag, other_topic)) {
     const auto same = of_color.find(reference);
     if (same != of_color.end()) return same->second * transform.Inverse();
   }
-  if (color.frame_id == depth.frame_id || IsCalledRegistered(topics.depth)) {
-    return std::nullopt;
-  }
+  return std::nullopt;
+}
+
+// color_from_other between two coordinate frames, if the first transforms of
+// the bag say it.
+std::optional<Rigid3d> ColorFromFixed(BagReader* bag, const BagTopics& topics,
+                                      const std::string& color_frame,
+                                      const std::string& other_frame) {
   constexpr int kManyMessages = 500;  // several seconds
   TransformTree tree;
   for (const std::string& topic : topics.transforms) {
@@ -128,7 +136,22 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
       tree.Add(ReadMessage(*bag, message, ReadRosTransforms));
     }
   }
-  std::optional<Rigid3d> fixed = tree.Fixed(color.frame_id, depth.frame_id);
+  return tree.Fixed(color_frame, other_frame);
+}
+
+// color_from_depth; nothing if depth is registered to colour.
+std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
+                                      const ImageTraits& color,
+                                      const ImageTraits& depth,
+                                      bool has_camera) {
+  const std::optional<Rigid3d> of_viewer =
+      ColorFromViewer(bag, topics.color, topics.depth);
+  if (of_viewer.has_value()) return of_viewer;
+  if (color.frame_id == depth.frame_id || IsCalledRegistered(topics.depth)) {
+    return std::nullopt;
+  }
+  std::optional<Rigid3d> fixed =
+      ColorFromFixed(bag, topics, color.frame_id, depth.frame_id);
   if (!fixed.has_value() && !has_camera) {
     throw InputError(bag->path() + ": no fixed transform from '" +
                      depth.frame_id + "' (depth) to '" + color.frame_id +
@@ -226,6 +249,15 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
         "both cameras (a Kalibr file: camera, depth_camera)");
   }
   return setup;
+}
+
+std::optional<Rigid3d> CamFromImu(BagReader* bag, const BagTopics& topics,
+                                  const std::string& imu_frame) {
+  const std::optional<Rigid3d> of_viewer =
+      ColorFromViewer(bag, topics.color, topics.imu.accel);
+  if (of_viewer.has_value()) return of_viewer;
+  return ColorFromFixed(bag, topics, TraitsOf(bag, topics.color).frame_id,
+                        imu_frame);
 }
 
 }  // namespace rgbd_pose

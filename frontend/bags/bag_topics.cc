@@ -194,8 +194,13 @@ RosImage ReadImageOf(const BagReader& bag, const BagMessage& message) {
                      is_raw ? ReadRosImage : ReadRosCompressedImage);
 }
 
-BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
+BagTopics ChooseTopics(BagReader* bag,
+                       const std::vector<std::string>& all_names) {
   BagTopics chosen;
+  std::vector<std::string> names, of_imu;
+  for (const std::string& name : all_names) {
+    (IsImuTopic(*bag, name) ? of_imu : names).push_back(name);
+  }
   if (names.empty()) {
     std::vector<Fitness> fitness;
     for (const BagTopic& topic : bag->topics()) {
@@ -226,6 +231,7 @@ BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
       chosen.transforms.push_back(topic.name);
     }
   }
+  chosen.imu = ChooseImuTopics(*bag, of_imu, chosen.color);
   return chosen;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/bags/bag_imu.h"
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/ros_messages.h"
 #include "frontend/files/camera_file.h"
@@ -17,13 +18,15 @@ struct BagTopics {
   std::string color_info;  // CameraInfo; empty: none
   std::string depth_info;
   std::vector<std::string> transforms;  // /tf and /tf_static
+  ImuTopics imu;
   // Whether other topics were suitable as well, or the name of that of depth
   // does not say so.
   bool had_choice = false;
 };
 
 // Chooses the topics given by `names` (colour, depth and, unless it is next to
-// colour, CameraInfo) or, if there are none, by types, encodings and names.
+// colour, CameraInfo; those of the inertial sensor in any place). What is not
+// given is chosen by types, encodings and names.
 // Throws InputError, which lists the topics, unless one is the most suitable.
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
 
@@ -50,5 +53,10 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
 // missing parts are no error.
 std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
                                        bool has_camera);
+
+// The pose of the inertial sensor, of whose samples this is the frame, in the
+// axes of the colour camera; nothing if no fixed transforms tell it.
+std::optional<Rigid3d> CamFromImu(BagReader* bag, const BagTopics& topics,
+                                  const std::string& imu_frame);
 
 }  // namespace rgbd_pose

@@ -67,6 +67,20 @@ RosCameraInfo ReadRosCameraInfo(WireReader reader) {
   return info;
 }
 
+RosImu ReadRosImu(WireReader reader) {
+  RosImu imu;
+  imu.header = ReadHeader(&reader);
+  std::array<double, 4> orientation;
+  std::array<double, 9> covariance;
+  ReadNumbers(&reader, &orientation);
+  ReadNumbers(&reader, &covariance);
+  ReadNumbers(&reader, &imu.gyro);
+  ReadNumbers(&reader, &covariance);
+  imu.has_gyro = covariance[0] != -1.0;
+  ReadNumbers(&reader, &imu.accel);
+  return imu;
+}
+
 Rigid3d ReadRosTransform(WireReader* reader) {
   Rigid3d motion;
   ReadNumbers(reader, &motion.translation);

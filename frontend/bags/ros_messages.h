@@ -50,6 +50,14 @@ struct RosCameraInfo {
   uint32_t roi_width = 0;
 };
 
+// sensor_msgs/Imu without orientation and covariances.
+struct RosImu {
+  RosHeader header;
+  bool has_gyro = true;   // as the first covariance says: not -1
+  Eigen::Vector3d gyro;   // angular velocity, rad/s
+  Eigen::Vector3d accel;  // linear acceleration, m/s^2
+};
+
 // geometry_msgs/TransformStamped.
 struct RosTransform {
   RosHeader header;
@@ -61,6 +69,7 @@ struct RosTransform {
 RosImage ReadRosImage(WireReader reader);
 RosImage ReadRosCompressedImage(WireReader reader);
 RosCameraInfo ReadRosCameraInfo(WireReader reader);
+RosImu ReadRosImu(WireReader reader);
 
 // tf2_msgs/TFMessage or the older tf/tfMessage; only rigid transforms.
 std::vector<RosTransform> ReadRosTransforms(WireReader reader);

@@ -1,6 +1,6 @@
 #include "frontend/files/camera_file.h"
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
@@ -8,6 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_keys.h"
+#include "frontend/files/imu_calibration_file.h"
 #include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
@@ -77,20 +78,6 @@ Camera ReadKalibr(const YamlSection& file, const std::string& name) {
   return camera;
 }
 
-// camera_from_previous of a camera other than the first, from a 4 x 4 matrix.
-Rigid3d ReadKalibrMotion(const YamlSection& file, const std::string& name) {
-  const YamlSection cam = file.Child(name);
-  const std::vector<double> m = cam.Matrix("T_cn_cnm1");
-  Eigen::Matrix3d rotation;
-  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-  const bool is_rigid =
-      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <
-          1e-3 &&
-      rotation.determinant() > 0.0;
-  if (!is_rigid) cam.Fail("T_cn_cnm1", "contains no valid rotation");
-  return Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
-}
-
 DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
                             const std::string& name) {
   constexpr int kMaxCameras = 16;
@@ -98,7 +85,8 @@ DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
   for (int i = 1; i < kMaxCameras; ++i) {
     const std::string next = "cam" + std::to_string(i);
     if (!file.Has(next)) break;
-    cam_from_color = ReadKalibrMotion(file, next) * cam_from_color;
+    // T_cn_cnm1 is camera_from_previous.
+    cam_from_color = file.Child(next).RigidMotion("T_cn_cnm1") * cam_from_color;
     if (next != name) continue;
     DepthCamera depth = {ReadKalibr(file, name), cam_from_color.Inverse()};
     RequireSound(depth.camera.Check(), path + ": " + name + ": ");
@@ -226,6 +214,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   camera.depth_noise = ReadDepthNoise(path, file);
   CameraSetup result(camera);
   result.depth_scale = depth_scale;
+  result.imu = ReadImuCalibration(file);
   if (!remark.empty()) result.remark = path + ": " + remark;
   result.is_upside_down = result.camera.fy < 0.0;
   if (result.is_upside_down) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/geometry/camera.h"
+#include "core/inertial/imu_calibration.h"
 #include "frontend/frame/depth_registration.h"
 
 namespace rgbd_pose {
@@ -36,6 +37,9 @@ struct CameraSetup {
   // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;
 
+  // Of the inertial sensor beside the camera, as far as it is known.
+  ImuCalibration imu;
+
   // Whether images must be turned upside down before they fit `camera`: the y
   // axis of the calibration points up (fy < 0), as in ICL-NUIM. Paths are then
   // in the world of the recording, which is a mirror image.
@@ -66,8 +70,9 @@ RgbdCamera RegisteredCamera(const CameraSetup& setup);
 // and errors of depth (see DepthCorrection), inverse_depth_offset (1/m),
 // depth_rotation (rotation vector, rad), depth_translation (m); depth_noise, a
 // list of constant (m), quadratic (1/m), centre (m) and mean_share of a
-// DepthNoiseModel. Keys that start with colour_ are read as well. A key that is
-// nearly one of these is an error; all others are named in the remark.
+// DepthNoiseModel; ImuKeys(). Keys that start with colour_ are read as well. A
+// key that is nearly one of these is an error; all others are named in the
+// remark.
 // `depth_camera` is the name of the depth camera in a Kalibr file: cam0 if
 // depth is registered to colour, otherwise a later one. These have T_cn_cnm1,
 // the transform from the camera before. Empty: registered, but an error for a

@@ -6,6 +6,7 @@
 #include "core/geometry/camera.h"
 #include "core/util/nearest_name.h"
 #include "core/util/text_file.h"
+#include "frontend/files/imu_calibration_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -44,13 +45,16 @@ Keys ReadAtTop() {
   for (int i = 0; i < kMaxCameras; ++i) {
     keys.push_back("cam" + std::to_string(i));
   }
+  const Keys of_imu = ImuKeys();
+  keys.insert(keys.end(), of_imu.begin(), of_imu.end());
   return keys;
 }
 
 // Of a camera in a Kalibr file.
-const Keys kReadInCamera = {"camera_model", "intrinsics",
-                            "T_cn_cnm1",    "distortion_coeffs",
-                            "resolution",   "distortion_model"};
+const Keys kReadInCamera = {
+    "camera_model",      "intrinsics",       "T_cn_cnm1",
+    "distortion_coeffs", "distortion_model", "resolution",
+    "T_cam_imu",         "T_imu_cam",        "timeshift_cam_imu"};
 
 // What other programs keep in these files: not read, and no mistake. A name
 // that ends in a dot stands for all keys that begin with it.
@@ -66,8 +70,10 @@ const Keys kOfOtherPrograms = {
     "binning_x", "binning_y", "camera_name", "frame_id", "header",
     "projection_matrix", "rectification_matrix", "roi",
     // Kalibr
-    "cam_overlaps", "line_delay", "rostopic", "T_cam_imu", "T_imu_cam",
-    "timeshift_cam_imu"};
+    "cam_overlaps", "line_delay", "rostopic",
+    // Kalibr's and EuRoC's inertial sensors
+    "accelerometers", "comment", "gyroscopes", "imu0", "model", "rate_hz",
+    "sensor_type", "T_BS", "T_i_b", "time_offset", "update_rate"};
 
 bool IsOfOtherProgram(const std::string& key) {
   return std::any_of(kOfOtherPrograms.begin(), kOfOtherPrograms.end(),
@@ -118,6 +124,17 @@ std::string WithSpellingOfKeys(const std::string& text) {
     result += is_british ? "color_" + line.substr(7) : line;
   }
   return result;
+}
+
+void CheckImuKeys(const YamlSection& file) {
+  Keys unknown;
+  Check(file, ReadAtTop(), &unknown);
+  for (const char* name : {"imu0", "cam0"}) {
+    if (!file.Has(name) || !file.node()[name].IsMap()) continue;
+    Keys read = ImuKeys();
+    read.insert(read.end(), kReadInCamera.begin(), kReadInCamera.end());
+    Check(file.Child(name), read, &unknown);
+  }
 }
 
 std::string CheckCameraKeys(const YamlSection& file) {

@@ -16,4 +16,7 @@ std::string WithSpellingOfKeys(const std::string& text);
 // empty if there are none.
 std::string CheckCameraKeys(const YamlSection& file);
 
+// Throws the same InputError for a file of an inertial sensor.
+void CheckImuKeys(const YamlSection& file);
+
 }  // namespace rgbd_pose

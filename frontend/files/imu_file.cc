@@ -4,9 +4,12 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/files/stray_imu.h"
 
 namespace rgbd_pose {
 namespace {
+
+using Eigen::Vector3d;
 
 constexpr size_t kAccelColumns = 4;
 constexpr size_t kAllColumns = 7;
@@ -19,48 +22,101 @@ double ParseStamp(const std::string& word, const std::string& path, int line) {
                                    : ParseTimestamp(word, path, line);
 }
 
+Vector3d ParseVector(const TextLine& line, size_t first,
+                     const std::string& path, const char* what) {
+  Vector3d v;
+  for (size_t k = 0; k < 3; ++k) {
+    v[k] = ParseNumber(line.words[first + k], path, line.number, what);
+  }
+  return v;
+}
+
+// The first column of each part.
+struct Columns {
+  size_t count;  // of a row
+  size_t gyro;
+  size_t accel;
+};
+
+ImuSample ParseRow(const TextLine& line, const Columns& columns,
+                   const std::string& path) {
+  if (line.words.size() != columns.count) {
+    throw InputError(path, line.number,
+                     Format("%zu columns; an inertial sensor has a stamp, "
+                            "angular velocity and acceleration in 7, or a "
+                            "stamp and acceleration in 4, the same in all "
+                            "lines",
+                            line.words.size()));
+  }
+  ImuSample sample;
+  sample.stamp = ParseStamp(line.words[0], path, line.number);
+  if (columns.count == kAllColumns) {
+    sample.gyro = ParseVector(line, columns.gyro, path, "an angular velocity");
+  }
+  sample.accel = ParseVector(line, columns.accel, path, "an acceleration");
+  return sample;
+}
+
 }  // namespace
 
 ImuRecording ReadImuFile(const std::string& path) {
+  std::vector<TextLine> lines = ReadTextTable(path);
+  const bool is_stray =
+      !lines.empty() && Join(lines.front().words) == kStrayImuColumns;
+  if (is_stray) lines.erase(lines.begin());
+  if (lines.empty()) throw InputError(path + ": no samples");
+  const bool has_gyro = lines.front().words.size() != kAccelColumns;
+  const Columns columns = is_stray   ? Columns{kAllColumns, 4, 1}
+                          : has_gyro ? Columns{kAllColumns, 1, 4}
+                                     : Columns{kAccelColumns, 0, 1};
   ImuRecording recording;
-  size_t columns = 0;
-  for (const TextLine& line : ReadTextTable(path)) {
-    if (columns == 0) columns = line.words.size();
-    if ((columns != kAccelColumns && columns != kAllColumns) ||
-        line.words.size() != columns) {
+  recording.has_gyro = has_gyro;
+  int repeated = 0;
+  for (const TextLine& line : lines) {
+    const ImuSample sample = ParseRow(line, columns, path);
+    const bool is_first = recording.samples.empty();
+    const double last = is_first ? 0.0 : recording.samples.back().stamp;
+    if (!is_first && sample.stamp < last) {
       throw InputError(path, line.number,
-                       Format("%zu columns; an inertial sensor has a stamp, "
-                              "angular velocity and acceleration in 7, or a "
-                              "stamp and acceleration in 4, the same in all "
-                              "lines",
-                              line.words.size()));
+                       "the stamp is earlier than that of the line before; "
+                       "sort the file");
     }
-    const auto vector = [&](size_t first, const char* what) {
-      Eigen::Vector3d v;
-      for (size_t k = 0; k < 3; ++k) {
-        v[k] = ParseNumber(line.words[first + k], path, line.number, what);
-      }
-      return v;
-    };
-    ImuSample sample;
-    sample.stamp = ParseStamp(line.words[0], path, line.number);
-    if (columns == kAllColumns) {
-      sample.gyro = vector(1, "an angular velocity");
+    if (!is_first && sample.stamp == last) {
+      ++repeated;
+    } else {
+      recording.samples.push_back(sample);
     }
-    sample.accel = vector(columns - 3, "an acceleration");
-    if (!recording.samples.empty() &&
-        !(sample.stamp > recording.samples.back().stamp)) {
-      throw InputError(path, line.number,
-                       "the stamp is not later than that of the line before");
-    }
-    recording.samples.push_back(sample);
   }
-  if (recording.samples.empty()) throw InputError(path + ": no samples");
-  recording.has_gyro = columns == kAllColumns;
+  if (is_stray) ConvertStrayImu(&recording);
   const ImuFindings findings = ExamineImu(recording.samples);
   if (!findings.error.empty()) throw InputError(path + ": " + findings.error);
   recording.warning = findings.warning;
+  if (recording.warning.empty() && repeated > 0) {
+    recording.warning =
+        Format("%d samples have the stamp of the one before and are left out",
+               repeated);
+  }
   return recording;
+}
+
+std::string FormatImuRows(const std::vector<ImuSample>& samples, bool has_gyro,
+                          bool has_header) {
+  std::string text;
+  if (has_header) {
+    text = "#timestamp [s],";
+    if (has_gyro) text += "w_x [rad s^-1],w_y [rad s^-1],w_z [rad s^-1],";
+    text += "a_x [m s^-2],a_y [m s^-2],a_z [m s^-2]\n";
+  }
+  const auto add = [&text](const Vector3d& v) {
+    for (const double value : v) text += "," + ShortNumber(value);
+  };
+  for (const ImuSample& sample : samples) {
+    text += Format("%.9f", sample.stamp);
+    if (has_gyro) add(sample.gyro);
+    add(sample.accel);
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace rgbd_pose

@@ -86,6 +86,18 @@ std::vector<double> YamlSection::Matrix(const std::string& key) const {
   Fail(key, "needs a list of 4 lists of 4 numbers");
 }
 
+Rigid3d YamlSection::RigidMotion(const std::string& key) const {
+  const std::vector<double> m = Matrix(key);
+  Eigen::Matrix3d rotation;
+  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  const bool is_rigid =
+      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <
+          1e-3 &&
+      rotation.determinant() > 0.0;
+  if (!is_rigid) Fail(key, "contains no valid rotation");
+  return Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
+}
+
 int YamlSection::Pixels(const std::string& key) const {
   return Pixels(key, Number(key));
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/rigid3.h"
+
 namespace rgbd_pose {
 
 // A map of a YAML file, also of OpenCV's. Any error (a missing key, a word that
@@ -34,6 +36,9 @@ class YamlSection {
 
   // A 4 x 4 matrix, row by row: a list of 4 lists of numbers, or of 16 numbers.
   std::vector<double> Matrix(const std::string& key) const;
+
+  // A rigid motion as such a matrix.
+  Rigid3d RigidMotion(const std::string& key) const;
 
   // A whole number of pixels (> 0): of a key, or a number read from there.
   int Pixels(const std::string& key) const;

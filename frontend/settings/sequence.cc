@@ -25,6 +25,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   options.associations_file = settings.associations;
   if (!settings.topics.empty()) options.topics = SplitList(settings.topics);
   options.depth_scale = settings.depth_scale;
+  options.imu = settings.imu;
   if (!settings.camera.empty()) {
     options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);
   } else if (!settings.depth_camera.empty()) {
@@ -36,6 +37,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
     const CameraSetup said = options.camera.value_or(CameraSetup());
     options.camera.emplace(*camera).depth_camera = said.depth_camera;
     options.camera->is_upside_down = said.is_upside_down;
+    options.camera->imu = said.imu;
     options.depth_scale = 0.0;
   }
   return options;
@@ -111,6 +113,11 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
       {"depth_scale", kGroup,
        "raw depth units per metre; 0: from the camera or the recording",
        &settings->depth_scale},
+      {"imu", kGroup,
+       "YAML file that says mounting, delay or noise of the inertial sensor "
+       "(Kalibr's camchain-imucam or imu.yaml); empty: what the camera file "
+       "and the recording say; none: its samples are not read",
+       &settings->imu},
       {"motion_guess", kGroup,
        "trajectory (TUM text) with a rough motion between frames, from wheels "
        "or an IMU for example; empty: none",

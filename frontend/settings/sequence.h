@@ -23,6 +23,7 @@ struct SequenceSettings {
   std::string camera;           // file or preset; empty: that in the recording
   std::string depth_camera;     // name in that file; empty: depth is registered
   double depth_scale = 0.0;     // raw units per metre; 0: from the recording
+  std::string imu;              // file, or "none", see SourceOptions
   std::string motion_guess;     // file
   std::string groundtruth;      // file or "none"; empty: truth of the recording
   double max_damaged = 0.05;    // share of frames, see FrameStream

@@ -8,6 +8,8 @@
 #include "frontend/bags/transform_tree.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/image_pairing.h"
+#include "frontend/sources/imu_beside.h"
+#include "frontend/sources/imu_feed.h"
 #include "frontend/sources/source_kinds.h"
 
 namespace rgbd_pose {
@@ -27,6 +29,10 @@ class BagSource final : public FrameSource {
     std::vector<std::string> wanted = topics_.transforms;
     wanted.push_back(topics_.color);
     wanted.push_back(topics_.depth);
+    if (options.imu != SourceOptions::kNoImu && OpenImu(options)) {
+      wanted.push_back(topics_.imu.accel);
+      if (topics_.imu.is_split()) wanted.push_back(topics_.imu.gyro);
+    }
     messages_ = bag_->MessagesOf(wanted);
   }
 
@@ -40,7 +46,11 @@ class BagSource final : public FrameSource {
                          }};
       }
       if (const auto pair = pairing_.Take()) {
-        return MakeFrame(*pair);
+        const double stamp = pair->color.timestamp;
+        ReadImuFor(stamp);
+        RgbdFrame frame = MakeFrame(*pair);
+        frame.imu = imu_feed_.Take(stamp);
+        return frame;
       }
     } while (ReadOn());
     is_over_ = true;
@@ -61,6 +71,8 @@ class BagSource final : public FrameSource {
     return transforms_.PathOf("world", color_.frame);
   }
 
+  std::optional<ImuSensor> imu() const override { return imu_sensor_; }
+
   int unmatched_color() const override { return pairing_.unmatched_color(); }
 
   std::vector<std::string> remarks() const override {
@@ -79,6 +91,7 @@ class BagSource final : public FrameSource {
                       "'");
     }
     if (!damaged_transform_.empty()) lines.push_back(damaged_transform_);
+    AddImuRemarks(&lines);
     if (pairing_.same_stamp() > 0) {
       lines.push_back(SameStampRemark(bag_->path(), pairing_.same_stamp()));
     }
@@ -103,6 +116,57 @@ class BagSource final : public FrameSource {
     std::string frame;   // frame_id of the first image
   };
 
+  // Prepares to read the inertial sensor. Returns false if there is none.
+  bool OpenImu(const SourceOptions& options) {
+    if (topics_.imu.accel.empty()) {
+      if (options.imu.empty()) return false;
+      throw InputError(bag_->path() +
+                       ": has no inertial sensor (sensor_msgs/Imu); leave imu "
+                       "(--imu) out");
+    }
+    try {
+      imu_.emplace(bag_.get(), topics_.imu);
+    } catch (const InputError& error) {
+      throw InputError(error.what() +
+                       std::string("; imu=none (--imu=none) leaves the sensor "
+                                   "out"));
+    }
+    if (!imu_->frame_id().has_value()) return false;  // no messages
+    ImuCalibration calibration = ChooseImuCalibration(options);
+    if (!calibration.cam_from_imu.has_value()) {
+      calibration.cam_from_imu =
+          CamFromImu(bag_.get(), topics_, *imu_->frame_id());
+    }
+    imu_sensor_ = {calibration, imu_->has_gyro()};
+    imu_feed_ = ImuFeed(calibration.delay_s.value_or(0.0));
+    return true;
+  }
+
+  // Reads on until the inertial samples cover a frame, or until the sensor is
+  // taken to have stopped.
+  void ReadImuFor(double stamp) {
+    constexpr double kLongestWait = 1.0;  // s, by the clock of the recorder
+    const double start = received_;
+    while (imu_sensor_.has_value() && !imu_feed_.Covers(stamp) &&
+           received_ < start + kLongestWait && damage_ == nullptr && ReadOn()) {
+    }
+  }
+
+  void AddImuRemarks(std::vector<std::string>* lines) const {
+    if (!imu_sensor_.has_value()) return;
+    const std::string name = bag_->path() + ": " + topics_.imu.accel;
+    if (topics_.imu.had_choice) {
+      lines->push_back(name +
+                       " is taken for the inertial sensor; choose others with "
+                       "topics");
+    }
+    if (!imu_->warning().empty()) {
+      lines->push_back(name + ": " + imu_->warning());
+    }
+    const std::string left_out = imu_feed_.Remark(name);
+    if (!left_out.empty()) lines->push_back(left_out);
+  }
+
   // Reads the next message. Returns false if the bag has ended before.
   bool ReadOn() {
     if (is_read_) return false;
@@ -117,6 +181,7 @@ class BagSource final : public FrameSource {
       pairing_.Finish();
       return true;
     }
+    received_ = message->received;
     try {
       Add(*message);
     } catch (const InputError& error) {
@@ -132,6 +197,11 @@ class BagSource final : public FrameSource {
 
   void Add(const BagMessage& message) {
     const bool is_color = message.topic == topics_.color;
+    if (imu_sensor_.has_value() && (message.topic == topics_.imu.accel ||
+                                    message.topic == topics_.imu.gyro)) {
+      for (const ImuSample& sample : imu_->Add(message)) imu_feed_.Add(sample);
+      return;
+    }
     if (!is_color && message.topic != topics_.depth) {
       transforms_.Add(ReadMessage(*bag_, message, ReadRosTransforms));
       return;
@@ -187,14 +257,19 @@ class BagSource final : public FrameSource {
   BagReader::Messages messages_;
   ImagePairing pairing_;
   TransformTree transforms_;
+  std::optional<BagImu> imu_;
+  std::optional<ImuSensor> imu_sensor_;  // nothing: its messages are not read
+  ImuFeed imu_feed_;
+  double received_ = 0.0;  // the recorder's time of the last message, s
   Stream color_;
   Stream depth_;
   int num_frames_ = 0;
-  std::string damaged_transform_;  // error of the last damaged one
-  double last_stamp_ = 0.0;        // of the last frame, s
-  std::exception_ptr damage_;      // error of the last message
-  std::exception_ptr error_;       // error of the bag
-  bool is_read_ = false;           // to its end
+  // The error of the last damaged message that is no image.
+  std::string damaged_transform_;
+  double last_stamp_ = 0.0;    // of the last frame, s
+  std::exception_ptr damage_;  // error of the last message
+  std::exception_ptr error_;   // error of the bag
+  bool is_read_ = false;       // to its end
   bool is_over_ = false;
 };
 

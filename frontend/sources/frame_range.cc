@@ -77,7 +77,10 @@ class PartialSource final : public FrameSource {
     while (!picker_.IsOver()) {
       std::optional<RgbdFrame> next = whole_->Next();
       if (!next.has_value()) break;
-      if (picker_.Takes(next->timestamp)) return next->WithIndex(num_taken_++);
+      Keep(next->imu);
+      if (!picker_.Takes(next->timestamp)) continue;
+      next->imu = std::exchange(imu_, {});
+      return next->WithIndex(num_taken_++);
     }
     if (num_taken_ == 0 && picker_.number > 0) throw NoneOf(picker_.number);
     return std::nullopt;
@@ -96,6 +99,8 @@ class PartialSource final : public FrameSource {
   }
 
   Trajectory ground_truth() const override { return whole_->ground_truth(); }
+
+  std::optional<ImuSensor> imu() const override { return whole_->imu(); }
 
   // These refer to the whole recording.
   int unmatched_color() const override { return whole_->unmatched_color(); }
@@ -124,9 +129,26 @@ class PartialSource final : public FrameSource {
     bool IsOver() const { return number > range.last || after_s > range.end_s; }
   };
 
+  // Keeps inertial samples for the next frame of the part: all those after its
+  // frame before, but only a second of what is before a part that does not
+  // begin with the recording.
+  void Keep(const std::vector<ImuSample>& samples) {
+    constexpr double kBeforeFirst = 1.0;  // s
+    imu_.insert(imu_.end(), samples.begin(), samples.end());
+    const FrameRange& range = picker_.range;
+    const bool is_from_start = range.first == 0 && range.begin_s == 0.0;
+    if (num_taken_ > 0 || is_from_start || imu_.empty()) return;
+    const double earliest = imu_.back().stamp - kBeforeFirst;
+    imu_.erase(imu_.begin(), std::find_if(imu_.begin(), imu_.end(),
+                                          [earliest](const ImuSample& sample) {
+                                            return sample.stamp >= earliest;
+                                          }));
+  }
+
   std::unique_ptr<FrameSource> whole_;
   Picker picker_;
   int num_taken_ = 0;
+  std::vector<ImuSample> imu_;  // of frames that were not taken
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
+#include "core/inertial/imu_calibration.h"
+#include "core/inertial/imu_sample.h"
 #include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
@@ -19,13 +21,20 @@ struct RgbdFrame {
   // InputError if an image is unreadable or does not fit the camera.
   std::function<Frame()> read;
 
+  // The inertial samples after those of the frame before, see FrameSource::imu.
+  // In a recording they reach ImuFeed::kReach beyond the stamp, so that they
+  // cover the exposure of all rows, unless the sensor stops before.
+  std::vector<ImuSample> imu = {};
+
   // The same frame with another index.
   RgbdFrame WithIndex(int index) const {
-    return {timestamp, [read = read, index] {
+    return {timestamp,
+            [read = read, index] {
               Frame frame = read();
               frame.index = index;
               return frame;
-            }};
+            },
+            imu};
   }
 };
 
@@ -50,6 +59,10 @@ class FrameSource {
   // The ground-truth path (world from camera) of the frames so far; empty if
   // there is none. Throws InputError if it cannot be read.
   virtual Trajectory ground_truth() const { return {}; }
+
+  // The inertial sensor whose samples come with the frames, in its own axes and
+  // with the stamps of its own clock; nothing if there is none.
+  virtual std::optional<ImuSensor> imu() const { return std::nullopt; }
 
   // Number of colour images left out because they have no depth image.
   virtual int unmatched_color() const { return 0; }

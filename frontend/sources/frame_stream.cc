@@ -51,6 +51,9 @@ std::optional<StreamedFrame> FrameStream::Next() {
     if (!result.has_value()) break;
     if (result->error == nullptr) {
       ++num_good_;
+      std::vector<ImuSample>& imu = result->frame.imu;
+      imu.insert(imu.begin(), left_out_imu_.begin(), left_out_imu_.end());
+      left_out_imu_.clear();
       return std::move(result->frame);
     }
     try {
@@ -58,7 +61,7 @@ std::optional<StreamedFrame> FrameStream::Next() {
     } catch (const InputError& error) {
       if (!max_damaged_.has_value() || result->failed == Result::kPrepare)
         throw;
-      LeaveOut(*result, error);
+      LeaveOut(*std::move(result), error);
     }
   }
   if (num_good_ > 0 || damaged_.empty()) return std::nullopt;
@@ -79,13 +82,15 @@ void FrameStream::End() {
   changed_.notify_all();
 }
 
-void FrameStream::LeaveOut(const Result& result, const InputError& error) {
+void FrameStream::LeaveOut(Result result, const InputError& error) {
   if (result.failed == Result::kSource) {
     if (num_good_ == 0 && damaged_.empty()) throw error;
     stopped_ = error.what();
     return;
   }
   damaged_.emplace_back(error.what());
+  left_out_imu_.insert(left_out_imu_.end(), result.frame.imu.begin(),
+                       result.frame.imu.end());
   const size_t seen =
       std::max({num_good_ + damaged_.size(), num_expected_, kLeastFrames});
   const size_t least = *max_damaged_ > 0.0 ? kLeastDamaged : 1;
@@ -141,6 +146,7 @@ void FrameStream::ReadOne(Lock* lock) {
   }
 
   lock->unlock();
+  result.frame.imu = std::move(next->imu);
   result.failed = Result::kRead;
   try {
     const StageTimer timer(&result.frame.decode_ms);

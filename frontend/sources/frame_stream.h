@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/inertial/imu_sample.h"
 #include "core/util/input_error.h"
 #include "frontend/frame/prepared_frame.h"
 #include "frontend/sources/frame_source.h"
@@ -21,6 +22,9 @@ namespace rgbd_pose {
 struct StreamedFrame {
   PreparedFrame frame;
   double decode_ms = 0.0;  // duration of both, in whichever thread
+
+  // As RgbdFrame::imu; with those of frames that were left out before it.
+  std::vector<ImuSample> imu = {};
 };
 
 // The frames of a source in order, read and prepared ahead by several threads.
@@ -70,8 +74,8 @@ class FrameStream {
   std::optional<Result> Take();
   // How to go on in spite of damaged frames; empty if nothing more is allowed.
   std::string Hint() const;
-  // Leaves the frame out or ends the stream.
-  void LeaveOut(const Result& result, const InputError& error);
+  // Leaves the frame out or ends the stream. The inertial samples are kept.
+  void LeaveOut(Result result, const InputError& error);
 
   // Whether a frame may be started. Few are read ahead, to save memory.
   bool CanBegin() const;
@@ -83,8 +87,9 @@ class FrameStream {
   const Prepare prepare_;
   const int max_ahead_;
   const std::optional<double> max_damaged_;
-  const size_t num_expected_;  // of the source; 0: not known
-  size_t num_good_ = 0;        // frames returned
+  const size_t num_expected_;            // of the source; 0: not known
+  size_t num_good_ = 0;                  // frames returned
+  std::vector<ImuSample> left_out_imu_;  // since the last frame returned
   std::vector<std::string> damaged_;
   std::string stopped_;
   std::mutex mutex_;  // guards all members below

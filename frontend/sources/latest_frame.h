@@ -44,6 +44,7 @@ class LatestFrame final : public FrameSource {
 
   const RgbdCamera& camera() const override { return camera_->camera(); }
   Trajectory ground_truth() const override { return camera_->ground_truth(); }
+  std::optional<ImuSensor> imu() const override { return camera_->imu(); }
   int unmatched_color() const override { return camera_->unmatched_color(); }
   int dropped() const override {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -64,7 +65,12 @@ class LatestFrame final : public FrameSource {
       is_over_ = !next.has_value() || is_closing_;
       error_ = error;
       if (next.has_value()) {
-        if (newest_.has_value()) ++dropped_;
+        if (newest_.has_value()) {
+          ++dropped_;
+          // Its inertial samples are those before the ones of the next frame.
+          next->imu.insert(next->imu.begin(), newest_->imu.begin(),
+                           newest_->imu.end());
+        }
         newest_ = std::move(next);
       }
       changed_.notify_all();

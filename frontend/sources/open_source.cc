@@ -9,6 +9,7 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
+#include "frontend/sources/imu_beside.h"
 #include "frontend/sources/source_kinds.h"
 
 namespace rgbd_pose {
@@ -166,7 +167,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   std::string known;
   for (const SourceType& type : Types()) {
     if (name == kAuto ? type.recognises(options) : name == type.name) {
-      return type.open(options);
+      return WithImuBeside(type.open(options), options);
     }
     known += (known.empty() ? "" : "; ") + type.what;
   }

@@ -19,7 +19,8 @@ struct SourceOptions {
   std::string associations_file;
 
   // Topics of a bag: colour, depth and, if it is not next to colour, its
-  // camera_info. Empty: chosen by their types.
+  // camera_info; those of sensor_msgs/Imu in any place. Those that are not
+  // given are chosen by their types.
   std::vector<std::string> topics;
 
   // What it specifies overrides the recording. Nothing: the recording must
@@ -33,6 +34,12 @@ struct SourceOptions {
   // Largest time between a colour image and its depth image, s.
   double max_time_difference = 0.02;
   bool keep_color = false;  // store colours in Frame::color
+
+  // A file that says what is known of the inertial sensor, see
+  // ReadImuCalibrationFile; overrides all others. kNoImu: its samples are not
+  // read.
+  std::string imu;
+  static constexpr char kNoImu[] = "none";
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;

@@ -17,6 +17,8 @@
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/image_file.h"
+#include "frontend/files/imu_calibration_file.h"
+#include "frontend/files/imu_file.h"
 #include "frontend/sources/frame_stream.h"
 #include "frontend/sources/open_source.h"
 
@@ -26,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kList[] = "rgb.txt";
+constexpr char kImuList[] = "imu.csv";
 
 using StampPairs = std::vector<std::pair<double, double>>;  // colour, depth
 
@@ -110,6 +113,15 @@ void AddToLists(const fs::path& folder, double color,
   std::ofstream(folder / "depth.txt", std::ios::app) << LineOf("depth", *depth);
 }
 
+// Writes what is known of an inertial sensor, and the header of its samples.
+void BeginImu(const fs::path& folder, const ImuSensor& sensor) {
+  WriteFileAtomically(folder / kImuList,
+                      FormatImuRows({}, sensor.has_gyro, /*has_header=*/true));
+  if (sensor.calibration.IsEmpty()) return;
+  WriteFileAtomically(folder / "imu.yaml",
+                      FormatImuCalibration(sensor.calibration));
+}
+
 // The images are written by the threads that read them.
 WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
                          const TumWriterOptions& options) {
@@ -133,6 +145,8 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
   camera.depth_correction = {};  // the frames are corrected
   WriteFileAtomically((folder / "camera.yaml").string(),
                       FormatCameraFile(camera, ""));
+  const std::optional<ImuSensor> imu = source->imu();
+  if (imu.has_value()) BeginImu(folder, *imu);
   {
     FrameStream stream(source, write, std::max(1, options.threads),
                        options.max_damaged);
@@ -142,6 +156,11 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
       const bool is_new = pairs.empty() || pairs.back().second != depth;
       pairs.emplace_back(color, depth);
       AddToLists(folder, color, is_new ? std::optional(depth) : std::nullopt);
+      if (!next->imu.empty()) {
+        std::ofstream(folder / kImuList, std::ios::app)
+            << FormatImuRows(next->imu, imu->has_gyro, /*has_header=*/false);
+        written.imu_samples += static_cast<int>(next->imu.size());
+      }
       ++written.frames;
       if (options.progress) options.progress(written.frames);
       if (!options.stop || !written.stopped.empty()) continue;

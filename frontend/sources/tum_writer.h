@@ -30,6 +30,7 @@ struct TumWriterOptions {
 // The result of writing a sequence.
 struct WrittenSequence {
   int frames = 0;                    // written
+  int imu_samples = 0;               // written
   std::vector<std::string> damaged;  // FrameStream::damaged
   std::string stopped;               // why it ended early; empty: it did not
   std::string remark;                // what readers have to know; may be empty
@@ -37,7 +38,8 @@ struct WrittenSequence {
 
 // Writes all frames of a source in the layout of the TUM RGB-D benchmark (grey
 // if the source keeps no colour), with groundtruth.txt if there is a true path,
-// and camera.yaml in ORB-SLAM2's format. The sequence exists as a whole or not
+// with imu.csv and imu.yaml if there is an inertial sensor, and camera.yaml in
+// ORB-SLAM2's format. The sequence exists as a whole or not
 // at all: it is written to FOLDER.partial, which is renamed at the end. There
 // it can be read after each frame, so a camera's recording outlives a killed
 // program, and is not overwritten. Throws InputError if `folder` is a file, is

@@ -1,5 +1,6 @@
 import os
 from typing import (
+    Any,
     Dict,
     Iterator,
     List,
@@ -421,6 +422,7 @@ class Recording:
         depth_camera: str = "",
         depth_scale: float = 0.0,
         topics: Sequence[str] = (),
+        imu: Optional[_Path] = None,
     ) -> None: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int) -> Frame: ...
@@ -430,6 +432,8 @@ class Recording:
     @property
     def timestamps(self) -> _Floats: ...  # (N,), s
     def ground_truth(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
+    def imu(self) -> _Floats: ...  # (N, 7), s, rad/s, m/s^2
+    def imu_calibration(self) -> Optional[Dict[str, Any]]: ...
 
 class TumDataset:
     def __init__(

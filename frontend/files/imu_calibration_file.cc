@@ -1,0 +1,123 @@
+#include "frontend/files/imu_calibration_file.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/files/camera_keys.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct NoiseKey {
+  const char* name;
+  double ImuNoise::*value;
+  double most;  // larger values are those of other units
+};
+constexpr NoiseKey kNoiseKeys[] = {
+    {"gyroscope_noise_density", &ImuNoise::gyro_density, 1.0},
+    {"gyroscope_random_walk", &ImuNoise::gyro_walk, 1.0},
+    {"accelerometer_noise_density", &ImuNoise::accel_density, 10.0},
+    {"accelerometer_random_walk", &ImuNoise::accel_walk, 10.0}};
+
+constexpr char kCamFromImu[] = "T_cam_imu";
+constexpr char kImuFromCam[] = "T_imu_cam";
+constexpr char kDelay[] = "timeshift_cam_imu";
+
+std::optional<Rigid3d> ReadMounting(const YamlSection& section) {
+  if (section.Has(kCamFromImu)) return section.RigidMotion(kCamFromImu);
+  if (!section.Has(kImuFromCam)) return std::nullopt;
+  return section.RigidMotion(kImuFromCam).Inverse();
+}
+
+std::optional<double> ReadDelay(const YamlSection& section) {
+  constexpr double kMost = 1.0;  // s
+  if (!section.Has(kDelay)) return std::nullopt;
+  const double delay = section.Number(kDelay);
+  if (std::abs(delay) > kMost) {
+    section.Fail(kDelay, Format("must be at most %g s", kMost));
+  }
+  return delay;
+}
+
+std::optional<ImuNoise> ReadNoise(const YamlSection& section) {
+  bool has_any = false;
+  for (const NoiseKey& key : kNoiseKeys) has_any |= section.Has(key.name);
+  if (!has_any) return std::nullopt;
+  ImuNoise noise;
+  for (const auto& [name, value, most] : kNoiseKeys) {
+    noise.*value = section.Number(name);
+    if (!(noise.*value > 0.0) || noise.*value > most) {
+      section.Fail(
+          name, Format("must be above 0 and at most %g, in rad and m", most));
+    }
+  }
+  return noise;
+}
+
+ImuCalibration ReadSection(const YamlSection& section) {
+  return {ReadMounting(section), ReadDelay(section), ReadNoise(section)};
+}
+
+}  // namespace
+
+std::vector<std::string> ImuKeys() {
+  std::vector<std::string> keys = {kCamFromImu, kImuFromCam, kDelay};
+  for (const NoiseKey& key : kNoiseKeys) keys.push_back(key.name);
+  return keys;
+}
+
+ImuCalibration ReadImuCalibration(const YamlSection& file) {
+  ImuCalibration calibration = ReadSection(file);
+  for (const char* name : {"imu0", "cam0"}) {
+    if (!file.Has(name)) continue;
+    calibration.CompleteFrom(ReadSection(file.Child(name)));
+  }
+  return calibration;
+}
+
+ImuCalibration ReadImuCalibrationFile(const std::string& path) {
+  const YamlSection file = YamlSection::FromFile(path);
+  CheckImuKeys(file);
+  const ImuCalibration calibration = ReadImuCalibration(file);
+  if (!calibration.IsEmpty()) return calibration;
+  throw InputError(path +
+                   ": says nothing on an inertial sensor; keys are those of "
+                   "Kalibr: " +
+                   Join(ImuKeys()));
+}
+
+std::string FormatImuCalibration(const ImuCalibration& calibration) {
+  std::string text;
+  if (calibration.cam_from_imu.has_value()) {
+    text += "# Axes of the inertial sensor in those of the colour camera, m.\n";
+    text += std::string(kCamFromImu) + ":\n";
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topLeftCorner<3, 3>() =
+        calibration.cam_from_imu->rotation.toRotationMatrix();
+    matrix.topRightCorner<3, 1>() = calibration.cam_from_imu->translation;
+    for (int row = 0; row < 4; ++row) {
+      std::vector<std::string> words;
+      for (int k = 0; k < 4; ++k) words.push_back(ShortNumber(matrix(row, k)));
+      text += "- [" + Join(words) + "]\n";
+    }
+  }
+  if (calibration.delay_s.has_value()) {
+    text += "# Stamps of the sensor less those of the camera, s.\n";
+    text +=
+        std::string(kDelay) + ": " + ShortNumber(*calibration.delay_s) + "\n";
+  }
+  if (calibration.noise.has_value()) {
+    text += "# In continuous time; rad, m, s.\n";
+    for (const NoiseKey& key : kNoiseKeys) {
+      text += std::string(key.name) + ": " +
+              ShortNumber((*calibration.noise).*key.value) + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace rgbd_pose
