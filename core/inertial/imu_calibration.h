@@ -18,7 +18,7 @@ struct ImuCalibration {
   // timeshift_cam_imu.
   std::optional<double> delay_s;
 
-  std::optional<ImuNoise> noise;
+  std::optional<ImuNoise> noise;  // of its samples
 
   // Whether nothing is known.
   bool IsEmpty() const { return !cam_from_imu && !delay_s && !noise; }
@@ -33,7 +33,7 @@ struct ImuCalibration {
 
 // The inertial sensor of a recording.
 struct ImuSensor {
-  ImuCalibration calibration;
+  ImuCalibration calibration;  // as far as it is known
   bool has_gyro = true;  // if not, the angular velocities of samples are 0
 };
 

@@ -19,10 +19,11 @@ def run_program(name, *flags):
 
 @pytest.fixture(scope="session")
 def sequence(tmp_path_factory):
-    """Folder of a sequence of 8 frames in TUM layout."""
+    """Folder of a sequence of 8 frames, with inertial samples, in TUM layout."""
     folder = tmp_path_factory.mktemp("data") / "sequence"
     run_program(
-        "rgbd_simulate", "--path=xyz", "--frames=8", f"--output={folder}"
+        "rgbd_simulate", "--path=xyz", "--frames=8", "--imu",
+        f"--output={folder}",
     )
     return folder
 

@@ -111,3 +111,34 @@ def test_frames_say_what_they_are(whole):
     frame = whole[3]
     height, width = frame.gray.shape
     assert repr(frame) == f"Frame(3 at {frame.timestamp:.6f} s, {width} x {height})"
+
+
+def test_brings_its_inertial_samples(sequence, tmp_path):
+    recording = rgbd_pose.Recording(sequence)
+    imu = recording.imu()
+    assert imu.shape[1] == 7
+    np.testing.assert_allclose(np.diff(imu[:, 0]), 1 / 200, atol=1e-6)
+    rows = np.loadtxt(sequence / "imu.csv", delimiter=",")
+    np.testing.assert_allclose(imu, rows, atol=1e-9)
+    np.testing.assert_allclose(
+        np.linalg.norm(imu[:, 4:], axis=1).mean(), 9.81, atol=1.0
+    )
+    np.testing.assert_array_equal(recording.imu(), imu)
+    assert len(list(recording)) == len(recording), "frames are not used up"
+    known = recording.imu_calibration()
+    assert known["has_gyro"] and known["delay"] == 0.0
+    np.testing.assert_array_equal(known["cam_from_imu"], np.eye(4))
+    assert known["noise"]["accel"] == 0.002
+
+
+def test_a_calibration_may_be_given_and_the_sensor_left_out(sequence, tmp_path):
+    given = tmp_path / "given.yaml"
+    given.write_text("timeshift_cam_imu: 0.004\n")
+    known = rgbd_pose.Recording(sequence, imu=given).imu_calibration()
+    assert known["delay"] == 0.004
+    without = rgbd_pose.Recording(sequence, imu="none")
+    assert without.imu().shape == (0, 7)
+    assert without.imu_calibration() is None
+    given.write_text("timeshift_cam_im: 0.004\n")
+    with pytest.raises(rgbd_pose.InputError, match="did you mean"):
+        rgbd_pose.Recording(sequence, imu=given)

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
@@ -56,10 +57,39 @@ TEST_F(ImuFileTest, NamesTheLineOfWhatIsWrong) {
                    {"imu.csv:1: 6 columns"});
   ExpectInputError([&] { Read("1.0 0 0 9.8\n1.1 0 0 nan\n"); },
                    {"imu.csv:2:", "an acceleration"});
-  ExpectInputError([&] { Read("1.0 0 0 9.8\n\n1.0 0 0 9.8\n"); },
-                   {"imu.csv:3: the stamp is not later"});
+  ExpectInputError([&] { Read("1.0 0 0 9.8\n\n0.9 0 0 9.8\n"); },
+                   {"imu.csv:3: the stamp is earlier"});
   ExpectInputError([&] { Read("1305031098382 0 0 9.8\n"); },
                    {"imu.csv:1:", "is not in seconds"});
+}
+
+TEST_F(ImuFileTest, OfSamplesWithTheSameStampTheFirstIsUsed) {
+  const ImuRecording imu =
+      Read("1.0 0 0 9.8\n1.0 0 0 9.7\n1.0 0 0 9.6\n1.1 0 0 9.5\n");
+  ASSERT_EQ(imu.samples.size(), 2u);
+  EXPECT_EQ(imu.samples[0].accel.z(), 9.8);
+  EXPECT_EQ(imu.samples[1].accel.z(), 9.5);
+  EXPECT_THAT(imu.warning, testing::HasSubstr("2 samples"));
+}
+
+TEST_F(ImuFileTest, ReadsWhatItWrites) {
+  for (const bool has_gyro : {true, false}) {
+    std::vector<ImuSample> samples;
+    for (int k = 0; k < 3; ++k) {
+      samples.push_back({1.3e9 + 0.005 * k,
+                         Eigen::Vector3d::Constant(has_gyro ? 0.1 / 3 : 0.0),
+                         {0.1, -0.2, 9.8 + k / 7.0}});
+    }
+    const ImuRecording read = Read(FormatImuRows({}, has_gyro, true) +
+                                   FormatImuRows(samples, has_gyro, false));
+    EXPECT_EQ(read.has_gyro, has_gyro);
+    ASSERT_EQ(read.samples.size(), samples.size());
+    for (size_t k = 0; k < samples.size(); ++k) {
+      EXPECT_EQ(read.samples[k].stamp, samples[k].stamp);
+      EXPECT_EQ(read.samples[k].gyro, samples[k].gyro);
+      EXPECT_EQ(read.samples[k].accel, samples[k].accel);
+    }
+  }
 }
 
 TEST_F(ImuFileTest, RefusesWrongUnits) {

@@ -18,11 +18,14 @@ class FakeCamera final : public FrameSource {
     const int number = num_asked_;
     if (number == fails_at_) throw InputError("unplugged");
     if (number > last_) return std::nullopt;
-    return RgbdFrame{number / 30.0, [number] {
+    // With one inertial sample of the same stamp.
+    return RgbdFrame{number / 30.0,
+                     [number] {
                        Frame frame;
                        frame.timestamp = number / 30.0;
                        return frame;
-                     }};
+                     },
+                     {ImuSample{number / 30.0}}};
   }
   const RgbdCamera& camera() const override { return camera_; }
 
@@ -59,9 +62,14 @@ class FakeCamera final : public FrameSource {
 
 class LatestFrameTest : public testing::Test {
  protected:
-  void ExpectNext(int number, int index) {
+  // Expects a frame, and the inertial samples since the one before.
+  void ExpectNext(int number, int index, size_t samples = 1) {
     const std::optional<RgbdFrame> next = frames_.Next();
     ASSERT_TRUE(next.has_value());
+    ASSERT_EQ(next->imu.size(), samples);
+    for (size_t k = 0; k < samples; ++k) {
+      EXPECT_EQ(next->imu[k].stamp, (number - (samples - 1.0 - k)) / 30.0);
+    }
     EXPECT_EQ(next->timestamp, number / 30.0);
     EXPECT_EQ(next->read().index, index);
     EXPECT_EQ(next->read().timestamp, number / 30.0);
@@ -76,7 +84,7 @@ TEST_F(LatestFrameTest, DropsAllButTheNewest) {
   ExpectNext(1, 0);
   EXPECT_EQ(frames_.dropped(), 0);
   camera_->Allow(5);  // nobody asks for 2, 3 and 4
-  ExpectNext(5, 1);
+  ExpectNext(5, 1, /*samples=*/4);
   EXPECT_EQ(frames_.dropped(), 3);
   camera_->Allow(6);
   ExpectNext(6, 2);

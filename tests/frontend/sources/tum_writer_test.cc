@@ -13,6 +13,7 @@
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/sources/imu_beside.h"
 #include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
@@ -50,6 +51,45 @@ class TumWriterTest : public testing::Test {
   fs::path folder_;
   SyntheticOptions options_;
 };
+
+TEST_F(TumWriterTest, KeepsTheInertialSensor) {
+  SyntheticImuOptions imu;
+  imu.cam_from_imu = Rigid3d({0, 1, 0, 0}, {0.01, 0.02, 0.03});
+  imu.delay_s = 0.005;
+  auto dataset = std::make_unique<SyntheticDataset>(options_);
+  const std::vector<ImuSample> samples = dataset->SimulateImu(imu);
+  const auto source =
+      WithImu(std::move(dataset), samples,
+              {{imu.cam_from_imu, imu.delay_s, imu.densities}, true});
+  const WrittenSequence written = WriteTumSequence(source.get(), folder_);
+  EXPECT_EQ(written.imu_samples, static_cast<int>(samples.size()));
+  SourceOptions options;
+  options.path = folder_;
+  const auto read = OpenSource("auto", options);
+  ASSERT_TRUE(read->imu().has_value());
+  const ImuCalibration known = read->imu()->calibration;
+  EXPECT_TRUE(known.cam_from_imu->translation.isApprox(
+      imu.cam_from_imu.translation, 1e-12));
+  EXPECT_EQ(known.delay_s, 0.005);
+  EXPECT_EQ(known.noise->gyro_walk, imu.densities.gyro_walk);
+  std::vector<ImuSample> all;
+  while (const std::optional<RgbdFrame> next = read->Next()) {
+    all.insert(all.end(), next->imu.begin(), next->imu.end());
+  }
+  ASSERT_EQ(all.size(), samples.size());
+  constexpr double kTolerance = 1e-9;  // digits of the stamps
+  for (size_t k = 0; k < all.size(); ++k) {
+    EXPECT_NEAR(all[k].stamp, samples[k].stamp, kTolerance);
+    EXPECT_EQ(all[k].gyro, samples[k].gyro);
+    EXPECT_EQ(all[k].accel, samples[k].accel);
+  }
+}
+
+TEST_F(TumWriterTest, WritesNothingInertialWithoutASensor) {
+  Write(folder_);
+  EXPECT_FALSE(fs::exists(folder_ / "imu.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "imu.yaml"));
+}
 
 TEST_F(TumWriterTest, ReadsBackAsWritten) {
   SyntheticDataset dataset(options_);
