@@ -24,12 +24,13 @@ std::vector<ImuSample> ImuMerger::Take() {
     const Value& a = accel_[0];
     const Value& b = accel_[1];
     const Value& gyro = gyro_.front();
-    if (gyro.stamp > b.stamp) {
+    if (gyro.stamp >= b.stamp) {
       accel_.pop_front();
       continue;
     }
     const double gap = b.stamp - a.stamp;
-    if (gyro.stamp >= a.stamp && gap <= ImuBuffer::kMaxGap) {
+    const bool is_between = gyro.stamp > a.stamp && gap <= ImuBuffer::kMaxGap;
+    if (gyro.stamp == a.stamp || is_between) {
       const double part = (gyro.stamp - a.stamp) / gap;
       samples.push_back(
           {gyro.stamp, gyro.value, a.value + part * (b.value - a.value)});

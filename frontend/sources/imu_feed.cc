@@ -24,12 +24,14 @@ bool ImuFeed::Covers(double frame_stamp) const {
 
 std::vector<ImuSample> ImuFeed::Take(double frame_stamp) {
   const double end = EndOf(frame_stamp);
+  if (last_taken_.has_value() && *last_taken_ >= end) return {};
   auto last = std::find_if(
       samples_.begin(), samples_.end(),
       [end](const ImuSample& sample) { return sample.stamp >= end; });
   if (last != samples_.end()) ++last;
   std::vector<ImuSample> taken(samples_.begin(), last);
   samples_.erase(samples_.begin(), last);
+  if (!taken.empty()) last_taken_ = taken.back().stamp;
   return taken;
 }
 

@@ -27,7 +27,8 @@ class ImuFeed {
   bool Covers(double frame_stamp) const;
 
   // Removes and returns the samples up to the first one that is kReach beyond a
-  // frame's stamp, so that values there can be interpolated.
+  // frame's stamp, so that values there can be interpolated. None if one that
+  // far was taken already.
   std::vector<ImuSample> Take(double frame_stamp);
 
   // A remark for users on samples that were left out; empty if there are none.
@@ -41,6 +42,7 @@ class ImuFeed {
 
   double delay_s_;
   std::optional<double> last_;  // the stamp of the last sample, s
+  std::optional<double> last_taken_;
   int left_out_ = 0;
   std::deque<ImuSample> samples_;  // not taken yet
 };

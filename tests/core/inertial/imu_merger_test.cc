@@ -41,9 +41,9 @@ TEST(ImuMergerTest, InventsNothingWhereTheAccelerometerPauses) {
   for (const double stamp : {0.0, 0.01, 0.02, 0.20, 0.21}) {
     merger.AddAccel(stamp, {0.0, 0.0, 9.81});
   }
-  EXPECT_EQ(StampsOf(merger.Take()),
-            (std::vector<double>{0.0, 0.005, 0.01, 0.015, 0.02, 0.005 * 40,
-                                 0.005 * 41, 0.005 * 42}));
+  EXPECT_EQ(
+      StampsOf(merger.Take()),
+      (std::vector<double>{0.0, 0.005, 0.01, 0.015, 0.02, 0.20, 0.005 * 41}));
 }
 
 TEST(ImuMergerTest, LeavesOutWhatIsNotLater) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/util/format.h"
+#include "frontend/bags/bag_reader.h"
 #include "tests/frontend/bags/ros2_database.h"
 
 namespace rgbd_pose {

@@ -138,8 +138,7 @@ TEST_F(ImuCalibrationFileTest, BadValuesAreOneLine) {
       {"imu0:\n  gyroscope_noise_densty: 1\n",
        "imu.yaml:2: imu0.gyroscope_noise_densty"},
       {"timeshift_cam_imu: 5\n", "timeshift_cam_imu must be at most 1 s"},
-      {"gyroscope_noise_density: 0.001\n", "gyroscope_random_walk is missing"},
-      {std::string(kNoise) + "gyroscope_random_walk: 0\n", "imu.yaml"}};
+      {"gyroscope_noise_density: 0.001\n", "gyroscope_random_walk is missing"}};
   for (const auto& bad : kCases) {
     ExpectInputError([&] { Read(bad.text); }, {bad.problem});
   }
