@@ -13,9 +13,13 @@ namespace {
 
 constexpr char kImu[] = "sensor_msgs/Imu";
 
-// Messages of a topic that are examined when a bag is opened: 5 s at 200 Hz,
-// which is what ExamineImu needs to see axes.
-constexpr int kExamined = 1200;
+// Messages of a topic that are read when a bag is opened. In a compressed bag
+// all images between them have to be unpacked.
+constexpr int kFirst = 200;
+
+// Samples that are examined while the bag is read: 10 s at 200 Hz, which is
+// enough for ExamineImu to see axes.
+constexpr size_t kExamined = 2000;
 
 bool IsNamed(const std::string& topic, const char* part) {
   std::string name = topic;
@@ -95,17 +99,17 @@ ImuTopics ChooseImuTopics(const BagReader& bag,
 
 BagImu::BagImu(BagReader* bag, const ImuTopics& topics)
     : bag_(bag), topics_(topics) {
-  Examine();
+  CheckFirst();
 }
 
-void BagImu::Examine() {
-  std::vector<BagMessage> first = bag_->First(topics_.accel, kExamined);
+void BagImu::CheckFirst() {
+  std::vector<BagMessage> first = bag_->First(topics_.accel, kFirst);
   if (first.empty()) return;
   const RosImu imu = ReadMessage(*bag_, first.front(), ReadRosImu);
   frame_id_ = imu.header.frame_id;
   has_gyro_ = !topics_.gyro.empty() && (topics_.is_split() || imu.has_gyro);
   if (topics_.is_split()) {
-    for (BagMessage& message : bag_->First(topics_.gyro, kExamined)) {
+    for (BagMessage& message : bag_->First(topics_.gyro, kFirst)) {
       first.push_back(std::move(message));
     }
   }
@@ -114,20 +118,29 @@ void BagImu::Examine() {
                    [](const BagMessage& a, const BagMessage& b) {
                      return a.received < b.received;
                    });
-  std::vector<ImuSample> samples;
-  for (const BagMessage& message : first) {
-    for (const ImuSample& sample : Add(message)) samples.push_back(sample);
+  for (const BagMessage& message : first) Add(message);
+  const std::string error = ExamineImu(samples_).error;
+  if (!error.empty()) {
+    throw InputError(bag_->path() + ": " + topics_.accel + ": " + error);
   }
   merger_ = ImuMerger();
-  const ImuFindings findings = ExamineImu(samples);
-  if (!findings.error.empty()) {
-    throw InputError(bag_->path() + ": " + topics_.accel + ": " +
-                     findings.error);
-  }
-  warning_ = findings.warning;
+  samples_.clear();
+}
+
+std::string BagImu::Warning() const {
+  const ImuFindings findings = ExamineImu(samples_);
+  return findings.error.empty() ? findings.warning : findings.error;
 }
 
 std::vector<ImuSample> BagImu::Add(const BagMessage& message) {
+  const std::vector<ImuSample> samples = Read(message);
+  for (const ImuSample& sample : samples) {
+    if (samples_.size() < kExamined) samples_.push_back(sample);
+  }
+  return samples;
+}
+
+std::vector<ImuSample> BagImu::Read(const BagMessage& message) {
   const RosImu imu = ReadMessage(*bag_, message, ReadRosImu);
   // Without a stamp in the header, the time of recording is used.
   const double stamp =

@@ -34,7 +34,7 @@ ImuTopics ChooseImuTopics(const BagReader& bag,
 // Reads the messages of an inertial sensor as one stream of samples.
 class BagImu {
  public:
-  // Reads the first messages. Throws InputError for units that are wrong.
+  // Reads the first messages. Throws InputError if their units are wrong.
   BagImu(BagReader* bag, const ImuTopics& topics);
 
   // The coordinate frame of the samples; nothing if there are no messages.
@@ -42,20 +42,22 @@ class BagImu {
 
   bool has_gyro() const { return has_gyro_; }
 
-  // What ExamineImu says of the first messages; empty if nothing.
-  const std::string& warning() const { return warning_; }
+  // What ExamineImu says of the first samples that Add has returned, 2000 at
+  // most; empty if nothing.
+  std::string Warning() const;
 
   // Adds a message, and returns the samples that are known since the last call.
   std::vector<ImuSample> Add(const BagMessage& message);
 
  private:
-  void Examine();
+  void CheckFirst();
+  std::vector<ImuSample> Read(const BagMessage& message);
 
   BagReader* bag_;
   ImuTopics topics_;
   std::optional<std::string> frame_id_;
   bool has_gyro_ = true;
-  std::string warning_;
+  std::vector<ImuSample> samples_;  // the first ones
   ImuMerger merger_;
 };
 

@@ -99,14 +99,15 @@ std::string Meant(const std::string& key, const Keys& read) {
 }
 
 // Adds the keys that nobody knows.
-void Check(const YamlSection& section, const Keys& read, Keys* unknown) {
+void Check(const YamlSection& section, const Keys& read,
+           const std::string& files, Keys* unknown) {
   for (const std::string& key : section.Keys()) {
     if (std::count(read.begin(), read.end(), key) > 0) continue;
     if (key.empty() || IsOfOtherProgram(key)) continue;
     const std::string meant = Meant(key, read);
     if (!meant.empty()) {
       section.Fail(key,
-                   "is no key of camera files; did you mean " + meant + "?");
+                   "is no key of " + files + "; did you mean " + meant + "?");
     }
     unknown->push_back(key);
   }
@@ -128,23 +129,25 @@ std::string WithSpellingOfKeys(const std::string& text) {
 
 void CheckImuKeys(const YamlSection& file) {
   Keys unknown;
-  Check(file, ReadAtTop(), &unknown);
+  const std::string files = "files of inertial sensors";
+  Check(file, ReadAtTop(), files, &unknown);
   for (const char* name : {"imu0", "cam0"}) {
     if (!file.Has(name) || !file.node()[name].IsMap()) continue;
     Keys read = ImuKeys();
     read.insert(read.end(), kReadInCamera.begin(), kReadInCamera.end());
-    Check(file.Child(name), read, &unknown);
+    Check(file.Child(name), read, files, &unknown);
   }
 }
 
 std::string CheckCameraKeys(const YamlSection& file) {
   Keys unknown;
-  Check(file, ReadAtTop(), &unknown);
+  const std::string files = "camera files";
+  Check(file, ReadAtTop(), files, &unknown);
   for (int i = 0; i < kMaxCameras; ++i) {
     const std::string name = "cam" + std::to_string(i);
     if (!file.Has(name) || !file.node()[name].IsMap()) continue;
     Keys of_camera;
-    Check(file.Child(name), kReadInCamera, &of_camera);
+    Check(file.Child(name), kReadInCamera, files, &of_camera);
     for (const std::string& key : of_camera)
       unknown.push_back(name + "." + key);
   }

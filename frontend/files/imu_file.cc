@@ -1,5 +1,7 @@
 #include "frontend/files/imu_file.h"
 
+#include <algorithm>
+
 #include "core/inertial/imu_check.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -13,6 +15,10 @@ using Eigen::Vector3d;
 
 constexpr size_t kAccelColumns = 4;
 constexpr size_t kAllColumns = 7;
+
+// How much earlier than a row before it a row may be, s: programs that write
+// from several threads exchange neighbours.
+constexpr double kMaxDisorder = 0.1;
 
 // Seconds since 1970 are below 2e9, nanoseconds above 1e18.
 double ParseStamp(const std::string& word, const std::string& path, int line) {
@@ -57,6 +63,21 @@ ImuSample ParseRow(const TextLine& line, const Columns& columns,
   return sample;
 }
 
+// Sorts the samples by their stamps, and returns how many have the stamp of the
+// one before and were left out.
+size_t Sort(std::vector<ImuSample>* samples) {
+  std::stable_sort(
+      samples->begin(), samples->end(),
+      [](const ImuSample& a, const ImuSample& b) { return a.stamp < b.stamp; });
+  const auto end = std::unique(samples->begin(), samples->end(),
+                               [](const ImuSample& a, const ImuSample& b) {
+                                 return a.stamp == b.stamp;
+                               });
+  const size_t repeated = samples->end() - end;
+  samples->erase(end, samples->end());
+  return repeated;
+}
+
 }  // namespace
 
 ImuRecording ReadImuFile(const std::string& path) {
@@ -71,29 +92,24 @@ ImuRecording ReadImuFile(const std::string& path) {
                                      : Columns{kAccelColumns, 0, 1};
   ImuRecording recording;
   recording.has_gyro = has_gyro;
-  int repeated = 0;
+  double latest = 0.0;
   for (const TextLine& line : lines) {
     const ImuSample sample = ParseRow(line, columns, path);
-    const bool is_first = recording.samples.empty();
-    const double last = is_first ? 0.0 : recording.samples.back().stamp;
-    if (!is_first && sample.stamp < last) {
+    latest = std::max(latest, sample.stamp);
+    if (sample.stamp < latest - kMaxDisorder) {
       throw InputError(path, line.number,
-                       "the stamp is earlier than that of the line before; "
-                       "sort the file");
+                       "the stamp is earlier than those before; sort the file");
     }
-    if (!is_first && sample.stamp == last) {
-      ++repeated;
-    } else {
-      recording.samples.push_back(sample);
-    }
+    recording.samples.push_back(sample);
   }
+  const size_t repeated = Sort(&recording.samples);
   if (is_stray) ConvertStrayImu(&recording);
   const ImuFindings findings = ExamineImu(recording.samples);
   if (!findings.error.empty()) throw InputError(path + ": " + findings.error);
   recording.warning = findings.warning;
   if (recording.warning.empty() && repeated > 0) {
     recording.warning =
-        Format("%d samples have the stamp of the one before and are left out",
+        Format("%zu samples have the stamp of the one before and are left out",
                repeated);
   }
   return recording;

@@ -26,10 +26,11 @@ struct ImuRecording {
 //
 // The stamp is in s, or in nanoseconds (above 1e15); rad/s and m/s^2. Behind
 // the header "timestamp, a_x, ..., alpha_z" acceleration comes first, as in the
-// imu.csv of Stray Scanner, see stray_imu.h. Of samples with the same stamp the
-// first one is used, which the warning says. Throws InputError with file and
-// line for what is no such row and for stamps that decrease, with the file for
-// units that ExamineImu finds wrong.
+// imu.csv of Stray Scanner, see stray_imu.h. Samples are sorted by their
+// stamps; of those with the same stamp the first one is used, which the warning
+// says. Throws InputError with file and line for what is no such row and for
+// stamps that are more than 0.1 s too early, with the file for units that
+// ExamineImu finds wrong.
 ImuRecording ReadImuFile(const std::string& path);
 
 // The text of a file that ReadImuFile reads as these samples, with stamps in s:

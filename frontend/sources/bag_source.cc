@@ -160,9 +160,8 @@ class BagSource final : public FrameSource {
                        " is taken for the inertial sensor; choose others with "
                        "topics");
     }
-    if (!imu_->warning().empty()) {
-      lines->push_back(name + ": " + imu_->warning());
-    }
+    const std::string warning = imu_->Warning();
+    if (!warning.empty()) lines->push_back(name + ": " + warning);
     const std::string left_out = imu_feed_.Remark(name);
     if (!left_out.empty()) lines->push_back(left_out);
   }

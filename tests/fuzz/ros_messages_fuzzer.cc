@@ -35,6 +35,8 @@ void ReadMessage(int kind, const WireReader& reader) {
           CameraOfInfo(ReadRosCameraInfo(reader), false, "info");
       return Require(camera.Check().empty(), "a camera");
     }
+    case 4:
+      return Require(ReadRosImu(reader).header.stamp >= 0.0, "a time");
     default:
       for (const RosTransform& transform : ReadRosTransforms(reader)) {
         Require(transform.parent_from_child.IsFinite(), "a motion");
@@ -50,7 +52,7 @@ FUZZ_TARGET(ros_messages) {
   if (size == 0) return 0;
   const auto format = data[0] % 2 == 0 ? WireFormat::kRos1 : WireFormat::kCdr;
   MayRefuse([&] {
-    ReadMessage(data[0] / 2 % 4,
+    ReadMessage(data[0] / 2 % 5,
                 WireReader(FuzzText(data + 1, size - 1), format));
   });
   return 0;

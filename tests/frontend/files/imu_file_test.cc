@@ -57,7 +57,7 @@ TEST_F(ImuFileTest, NamesTheLineOfWhatIsWrong) {
                    {"imu.csv:1: 6 columns"});
   ExpectInputError([&] { Read("1.0 0 0 9.8\n1.1 0 0 nan\n"); },
                    {"imu.csv:2:", "an acceleration"});
-  ExpectInputError([&] { Read("1.0 0 0 9.8\n\n0.9 0 0 9.8\n"); },
+  ExpectInputError([&] { Read("1.0 0 0 9.8\n\n0.8 0 0 9.8\n"); },
                    {"imu.csv:3: the stamp is earlier"});
   ExpectInputError([&] { Read("1305031098382 0 0 9.8\n"); },
                    {"imu.csv:1:", "is not in seconds"});
@@ -70,6 +70,15 @@ TEST_F(ImuFileTest, OfSamplesWithTheSameStampTheFirstIsUsed) {
   EXPECT_EQ(imu.samples[0].accel.z(), 9.8);
   EXPECT_EQ(imu.samples[1].accel.z(), 9.5);
   EXPECT_THAT(imu.warning, testing::HasSubstr("2 samples"));
+}
+
+TEST_F(ImuFileTest, ExchangedNeighboursAreSorted) {
+  const ImuRecording imu =
+      Read("1.00 0 0 9.7\n1.02 0 0 9.9\n1.01 0 0 9.8\n1.02 0 0 9.6\n");
+  ASSERT_EQ(imu.samples.size(), 3u);
+  EXPECT_EQ(imu.samples[0].accel.z(), 9.7);
+  EXPECT_EQ(imu.samples[1].accel.z(), 9.8);
+  EXPECT_EQ(imu.samples[2].accel.z(), 9.9);
 }
 
 TEST_F(ImuFileTest, ReadsWhatItWrites) {
