@@ -31,13 +31,13 @@ class BagImuTest : public Ros1BagTest {
     imu.linear_acceleration.z = gravity;
     return imu;
   }
-  // From 0.1 s before the first frame on; received 5 ms later.
+  // From 0.1 s before the first frame on.
   template <typename Make>
   void WriteStream(const std::string& topic, double rate, const Make& make,
-                   double seconds = 1.2) {
+                   double seconds = 1.2, double transfer = 0.005) {
     for (int k = 0; k < seconds * rate; ++k) {
       const double after = -0.1 + k / rate;
-      Write(topic, kStart + after + 0.005, make(after));
+      Write(topic, kStart + after + transfer, make(after));
     }
   }
   void WriteUnited(double gravity = 9.81) {
@@ -88,6 +88,16 @@ TEST_F(BagImuTest, SamplesComeWithTheFrames) {
   EXPECT_TRUE(source->imu()->calibration.IsEmpty());
   ExpectSamples(source.get(), 200.0);
   EXPECT_THAT(source->remarks(), testing::IsEmpty());
+}
+
+// A recorder that receives them in packets, long after the images.
+TEST_F(BagImuTest, SamplesThatArriveLateComeWithTheirFrames) {
+  Open();
+  WriteAll();
+  WriteStream(
+      kUnited, 200.0, [](double after) { return MakeImu(after); },
+      /*seconds=*/1.2, /*transfer=*/0.6);
+  ExpectSamples(Source().get(), 200.0);
 }
 
 TEST_F(BagImuTest, ImagesStayAsTheyWereWithoutIt) {
