@@ -155,6 +155,20 @@ TEST_F(ImuBesideTest, TumsAccelerometerIsThatOfAKinect) {
   EXPECT_TRUE(up.isApprox(Eigen::Vector3d(0, -9, -4)));
 }
 
+TEST_F(ImuBesideTest, TheSensorOfAPhoneIsThatOfStrayScanner) {
+  folder_.Write("imu.csv",
+                "timestamp, a_x, a_y, a_z, alpha_x, alpha_y, alpha_z\n"
+                "1.0, -1.0, 0, 0, 0, 0, 0\n1.1, -1.0, 0, 0, 0, 0, 0\n");
+  const auto source = Open();
+  const ImuSensor sensor = *source->imu();
+  EXPECT_TRUE(sensor.has_gyro);
+  const std::vector<ImuSample> samples = source->Next()->imu;
+  ASSERT_FALSE(samples.empty());
+  const Eigen::Vector3d up =
+      sensor.calibration.cam_from_imu->rotation * samples[0].accel;
+  EXPECT_TRUE(up.isApprox(Eigen::Vector3d(0, -9.80665, 0)));
+}
+
 TEST_F(ImuBesideTest, WrongUnitsAndClocksAreOneLineThatSaysWhatToDo) {
   folder_.Write("imu.csv", Rows(0.0, 1.0));
   ExpectInputError([&] { Open(); }, {"imu.csv: accelerations are 1 ",
