@@ -21,6 +21,9 @@ constexpr double kMaxReturnFlow = 0.5;
 constexpr double kMissingFrames = 1.5;
 constexpr double kMaxMovedOn = 0.2;
 
+// After a frame with fewer features that agree, pixels are needed at once.
+constexpr int kFewFeatures = 40;
+
 // Standard deviations of an unknown velocity of a hand-held camera.
 constexpr double kSigmaAngular = 0.5;  // rad/s
 constexpr double kSigmaLinear = 0.3;   // m/s
@@ -204,9 +207,23 @@ bool Odometry::Follow(const PreparedFrame& measured,
                       const std::optional<Prediction>& prediction,
                       TrackedFrame* result) {
   state_.aligned = AlignToLast(measured, prediction);
-  state_.effort =
-      state_.aligned.has_value() ? Effort::kQuick : Effort::kEverything;
+  if (!state_.aligned.has_value()) {
+    state_.effort = Effort::kEverything;
+  } else if (state_.has_few_features) {
+    state_.effort = Effort::kPixels;
+  } else {
+    state_.effort = Effort::kQuick;
+  }
+  // Pixels confirm features from where these were searched for.
+  const auto refine = [&](const PreparedFrame* seen) {
+    if (seen == nullptr || !attempts_.kept().needs_refinement) return;
+    const Rigid3d start =
+        state_.aligned.value_or(Rigid3d()) * state_.cur_from_ref;
+    attempts_.Refine(*seen, *state_.reference, GuessOf(start), result);
+    state_.shutter_tracking.Update(attempts_.kept());
+  };
   const PreparedFrame* frame = Look(measured, prediction, result);
+  if (state_.effort == Effort::kPixels) refine(frame);
   if (!state_.is_lost && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
@@ -215,18 +232,15 @@ bool Odometry::Follow(const PreparedFrame& measured,
         state_.effort == Effort::kQuick ? Effort::kPixels : Effort::kEverything;
     frame = Look(measured, prediction, result);
   }
-  if (frame != nullptr && attempts_.kept().needs_refinement) {
-    // Pixels that confirm features start from where these were searched for.
-    const Rigid3d start =
-        state_.aligned.value_or(Rigid3d()) * state_.cur_from_ref;
-    attempts_.Refine(*frame, *state_.reference, GuessOf(start), result);
-    state_.shutter_tracking.Update(attempts_.kept());
-  }
+  refine(frame);
   // A doubtful pose does not end the lost state.
   if (frame == nullptr ||
       (state_.is_lost && result->status != TrackingStatus::kOk)) {
     return false;
   }
+  const TrackingResult& tracked = attempts_.kept();
+  state_.has_few_features = tracked.source == TrackingSource::kDirect ||
+                            tracked.estimate.num_inliers < kFewFeatures;
   state_.twist = frame->twist;
   if (attempts_.kept().twist.has_value()) {
     state_.twist_covariance = attempts_.kept().twist_covariance;

@@ -223,6 +223,7 @@ class Odometry {
     Rigid3d cur_from_prev;                           // between the last two
     std::optional<Rigid3d> aligned;  // the same by coarse images
     Effort effort = Effort::kQuick;
+    bool has_few_features = false;
     // The last frame, to become a keyframe, if it was tracked and is none.
     std::optional<Keyframe> last;
 
