@@ -10,6 +10,7 @@
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/packed_cost.h"
 #include "costs/direct/direct_points.h"
+#include "costs/direct/selected_points.h"
 
 namespace rgbd_pose {
 
@@ -160,30 +161,23 @@ class DirectCostOf final : public PackedCost<Type> {
   int num_levels() const override { return options_.num_levels; }
   void SetLevel(int level) override { level_ = level; }
 
-  // The points of a previous frame are kept while the bound pairs have the same
-  // nonzero id of the previous frame.
+  // The points of previous frames with a nonzero id are kept for further pairs.
   void Bind(const FramePair& pair) override {
     this->SetThreads(pair.threads);
     level_ = 0;
     input_ = DirectInput();
     static const FrameView none{};
+    const bool has_images = pair.prev != nullptr && pair.cur != nullptr;
+    prev_ = has_images ? pair.prev : nullptr;
     input_.cur = pair.cur != nullptr ? pair.cur : &none;
-    prev_ = pair.prev;
-    if (pair.prev == nullptr || pair.cur == nullptr) {
-      prev_ = nullptr;
-      for (LevelPoints& level : points_) level = {PackedColumns(), true};
-      points_of_ = 0;
-      return;
-    }
+    points_.Begin(has_images ? pair.prev->id : 0);
+    if (!has_images) return;
     input_.moving = pair.cur->moving;
     input_.lens = pair.cur->levels[0].camera.MakeLens();
     input_.moves_color = !pair.cur->timing.color.IsGlobal();
     input_.moves_depth = !pair.cur->timing.depth.IsGlobal();
     RequireSound(pair.prev->depth_noise.Check(),
                  "direct cost: the view's depth_noise: ");
-    if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
-    points_of_ = pair.prev->id;
-    for (LevelPoints& level : points_) level.is_selected = false;
   }
 
   void Associate(const Rigid3d& cur_from_prev) override {
@@ -247,20 +241,18 @@ class DirectCostOf final : public PackedCost<Type> {
     return !is_there;
   }
 
-  // The points of a level are selected when they are needed for the first time.
   const PackedColumns& PointsOf(int level) {
-    LevelPoints& points = points_[level];
-    if (points.is_selected) return points.columns;
-    // Coarser levels only lead to the finest one.
-    constexpr int kMaxCoarsePoints = 1000;
-    DirectOptions selection = options_;
-    int& count = selection.max_points;
-    if (count == 0) count = Residual::kMaxPoints;
-    if (level > 0) count = std::min(count, kMaxCoarsePoints);
-    Residual::Points(*prev_, ImageLevel(*prev_, level), selection,
-                     &points.columns);
-    points.is_selected = true;
-    return points.columns;
+    return points_.At(level, [&](PackedColumns* points) {
+      points->size = 0;
+      if (prev_ == nullptr) return;
+      // Coarser levels only lead to the finest one.
+      constexpr int kMaxCoarsePoints = 1000;
+      DirectOptions selection = options_;
+      int& count = selection.max_points;
+      if (count == 0) count = Residual::kMaxPoints;
+      if (level > 0) count = std::min(count, kMaxCoarsePoints);
+      Residual::Points(*prev_, ImageLevel(*prev_, level), selection, points);
+    });
   }
 
   void LookUp() {
@@ -271,13 +263,8 @@ class DirectCostOf final : public PackedCost<Type> {
   }
 
   DirectOptions options_;
-  struct LevelPoints {
-    PackedColumns columns;
-    bool is_selected = true;  // of no frame there are none
-  };
-  const FrameView* prev_ = nullptr;  // of the bound pair
-  std::vector<LevelPoints> points_;  // by level
-  uint64_t points_of_ = 0;           // id of the frame of points_
+  const FrameView* prev_ = nullptr;  // of the bound pair; null: no images
+  SelectedPoints points_;            // of previous frames
   DirectInput input_;
   int level_ = 0;
   mutable PackedColumns noise_;  // see AddSpuriousInformation
