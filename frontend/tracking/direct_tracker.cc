@@ -118,7 +118,8 @@ void DirectTracker::Track(const Reference& reference,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
   MotionEstimate* const estimate = &tracked->estimate;
-  Estimate(*reference.images(), frame, guess.cur_from_ref,
+  Estimate(*reference.images(), frame,
+           guess.search_at.value_or(guess.cur_from_ref),
            PriorOf(options_, guess), nullptr, &estimators_.leading, estimate);
   if (estimate->num_used > 0) {
     Estimate(*reference.images(), frame, Rigid3d(estimate->cur_from_prev),
