@@ -336,8 +336,13 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     return attempts_.TryAgain(frame, *state_.reference, guess, result);
   };
   std::optional<Twist> twist;
-  if (prediction.has_value() && state_.interval > 0.0) {
-    twist = TwistOf(prediction->cur_from_prev, state_.interval);
+  if (state_.interval > 0.0) {
+    if (prediction.has_value()) {
+      twist = TwistOf(prediction->cur_from_prev, state_.interval);
+    } else if (state_.aligned.has_value() &&
+               !state_.shutter_tracking.velocity()->last().has_value()) {
+      twist = TwistOf(*state_.aligned, state_.interval);
+    }
   }
   std::optional<Rigid3d> prev_from_ref;
   if (!state_.is_lost) prev_from_ref = state_.cur_from_ref;

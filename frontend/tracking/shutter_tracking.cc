@@ -55,6 +55,10 @@ const PreparedFrame* ShutterTracking::Follow(
     return forget();
   }
   const double middle = frame.color_shutter.offset;
+  // Nothing is known of the velocity of the first reference yet.
+  if (first_guess.has_value() && early_.has_value() && early_->is_free) {
+    MoveReference(*first_guess, interval, reference);
+  }
   found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
   if (!track(*found_.frame, &prior)) return nullptr;
