@@ -63,6 +63,10 @@ std::vector<Setting> Table(SimulateSettings* settings) {
       {"walking_boxes", kGroup,
        "number of boxes, 0..3, that walk to and fro through the scene",
        &options->walking_boxes},
+      {"carrier", kGroup,
+       "share of the view, 0..0.9 of its height from below, in which the "
+       "camera sees what carries it",
+       &options->carrier},
       {"black", kGroup,
        "time (s) during which colour is black, in the middle of the sequence",
        &options->black_s},

@@ -53,6 +53,27 @@ SyntheticMover MovingPatch(const SyntheticOptions& options, const Path& path) {
   return patch;
 }
 
+// A part of whatever carries the camera: a printed board across the lower part
+// of the view, which stands still in the image.
+SyntheticMover Carrier(const SyntheticOptions& options, const Path& path) {
+  constexpr double kDepth = 0.8;  // m
+  const Camera& camera = options.camera.camera;
+  SceneFace face;
+  face.width = kDepth * camera.width / camera.fx;
+  face.height = options.carrier * kDepth * camera.height / camera.fy;
+  face.origin = {-kDepth * (camera.cx + 0.5) / camera.fx,
+                 kDepth * (camera.height - 0.5 - camera.cy) / camera.fy -
+                     face.height,
+                 kDepth};
+  face.normal = -Vector3d::UnitZ();
+  face.material = kPoster;
+  face.seed = HashCell(1, 4, options.seed);
+  SyntheticMover carrier;
+  carrier.scene = {{face}, {0.3, -0.3, -1.5}};
+  carrier.world_from_mover = path;
+  return carrier;
+}
+
 struct WalkingBox {
   SceneBox box;   // in the middle of its way
   Vector3d half;  // from there to either end (m)
@@ -151,6 +172,8 @@ SyntheticOptions Checked(SyntheticOptions options) {
   }
   Require(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0,
           "exposure_drift of a synthetic sequence must be in 0..1");
+  Require(options.carrier >= 0.0 && options.carrier <= 0.9,
+          "carrier of a synthetic sequence must be in 0..0.9");
   Require(options.moving_patch >= 0.0 && options.moving_patch <= kMaxPatchShare,
           Format("moving_patch of a synthetic sequence must be in 0..%g",
                  kMaxPatchShare));
@@ -186,6 +209,7 @@ Renderer MakeRenderer(const SyntheticOptions& options, const Camera& camera,
     movers.push_back(MakeWalkingBox(i, options.seed));
   }
   if (options.moving_patch > 0.0) movers.push_back(MovingPatch(options, path));
+  if (options.carrier > 0.0) movers.push_back(Carrier(options, path));
   return Renderer(MakeScene(options.scene, options.seed), camera, movers);
 }
 

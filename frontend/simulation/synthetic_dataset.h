@@ -59,6 +59,10 @@ struct SyntheticOptions {
   double moving_patch = 0.0;
   int walking_boxes = 0;
 
+  // Share of the view, 0 to 0.9 of its height from below, in which the camera
+  // sees what carries it: a printed board that stands still in the image.
+  double carrier = 0.0;
+
   // How long colour is black (s), in the middle of the sequence.
   double black_s = 0.0;
 
