@@ -61,10 +61,10 @@ SyntheticMover Carrier(const SyntheticOptions& options, const Path& path) {
   SceneFace face;
   face.width = kDepth * camera.width / camera.fx;
   face.height = options.carrier * kDepth * camera.height / camera.fy;
-  face.origin = {-kDepth * (camera.cx + 0.5) / camera.fx,
-                 kDepth * (camera.height - 0.5 - camera.cy) / camera.fy -
-                     face.height,
-                 kDepth};
+  face.origin = {
+      -kDepth * (camera.cx + 0.5) / camera.fx,
+      kDepth * (camera.height - 0.5 - camera.cy) / camera.fy - face.height,
+      kDepth};
   face.normal = -Vector3d::UnitZ();
   face.material = kPoster;
   face.seed = HashCell(1, 4, options.seed);

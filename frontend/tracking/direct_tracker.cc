@@ -109,7 +109,10 @@ std::optional<Rigid3d> DirectTracker::AlignCoarsely(
            &*estimators_.coarse, &start_);
   // Blur lets fewer points agree, but two frames in a row are never far apart.
   constexpr double kMinShare = 0.5;
-  if (!(start_.num_inliers >= kMinShare * start_.num_used)) return std::nullopt;
+  if (start_.num_used == 0 ||
+      start_.num_inliers < kMinShare * start_.num_used) {
+    return std::nullopt;
+  }
   return start_.cur_from_prev;
 }
 

@@ -82,9 +82,10 @@ TrackedFrame Odometry::Track(const Frame& frame,
                guess_covariance);
 }
 
-TrackedFrame Odometry::Track(const PreparedFrame& frame,
+TrackedFrame Odometry::Track(const PreparedFrame& measured,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
+  PreparedFrame frame = measured;
   const Camera& camera = tracker_->images().camera;
   const cv::Size size(camera.width, camera.height);
   if (frame.gray.size() != size || frame.depth.size() != size) {
@@ -121,6 +122,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
       frame, {{kSigmaAngular, 0.0, 0.0}, {kSigmaLinear, 0.0, 0.0}});
   {
     const StageTimer timer(&result.track_ms);
+    if (!state_.carried.empty()) {
+      frame.depth = state_.carried.WithoutRegion(frame.depth);
+    }
     std::optional<Prediction> prediction;
     if (cur_from_prev_guess != nullptr) {
       prediction = Predict(*cur_from_prev_guess, guess_covariance);
@@ -145,6 +149,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
+  if (result.status == TrackingStatus::kOk) {
+    state_.carried.Learn(size, attempts_.kept().votes);
+  }
   state_.last.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {
     state_.last = {result.index,

@@ -230,6 +230,7 @@ class Odometry {
     // The camera.
     ShutterTracking shutter_tracking;
     StampJitter stamp_jitter;  // of depth
+    CarriedRegion carried;     // what the camera sees of its carrier
     // The 90 % quantile of TrackingResult::covariance_factor.
     double usual_inflation = 4.0;
 

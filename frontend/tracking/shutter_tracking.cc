@@ -108,7 +108,7 @@ void ShutterTracking::Accept() {
 
 bool ShutterTracking::MoveReference(const Twist& since, double interval,
                                     OdometryKeyframe* reference) {
-  if (!early_.has_value()) return false;
+  if (!early_.has_value() || !IsOfAHand(since)) return false;
   const Twist twist =
       VelocityBetween(early_->before, early_->interval, since, interval);
   Frame& frame = early_->frame;
