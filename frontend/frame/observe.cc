@@ -17,8 +17,8 @@ Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
                            const Twist& twist, const Eigen::Vector3d& point,
                            double row, Eigen::Vector3d* moved) {
   // The time depends on the row where the point is seen, and the row on the
-  // time. The second iteration reduces the remaining error to a hundredth. It is
-  // not needed if the row is as guessed.
+  // time. The second iteration reduces the remaining error to a hundredth. It
+  // is not needed if the row is as guessed.
   constexpr double kSameRow = 0.05;  // px: a few microseconds
   Eigen::Vector2d pixel;
   for (int step = 0; step < 2; ++step) {

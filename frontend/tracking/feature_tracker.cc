@@ -137,7 +137,6 @@ void FeatureTracker::Track(const Reference& reference,
     track(frame.WithTwist(tracked->twist), found, found);
   }
   Complete(ours, tracked);
-  CastVotes(ours, frame, tracked);
 }
 
 void FeatureTracker::TrackAgain(const Reference& reference,
@@ -158,7 +157,6 @@ void FeatureTracker::TrackAgain(const Reference& reference,
     FindTwist(*ours.features, frame, *guess.velocity, tracked);
   }
   Complete(ours, tracked);
-  CastVotes(ours, frame, tracked);
 }
 
 void FeatureTracker::Complete(const FeatureReference& ours,
@@ -181,41 +179,6 @@ void FeatureTracker::Complete(const FeatureReference& ours,
   tracked->overlap = {ShareOf(ours, *tracked), MeanInlierFlowPx(*tracked)};
   tracked->needs_new_keyframe =
       tracked->estimate.num_inliers < options_.min_inliers_ok;
-}
-
-void FeatureTracker::CastVotes(const FeatureReference& ours, const Frame& frame,
-                               TrackingResult* tracked) const {
-  // Distances in the image, px: the least that tells whether a feature moves,
-  // what counts as still, and what as moved like the scene.
-  constexpr double kTells = 4.0, kStill = 1.0, kLikeTheScene = 2.0;
-  tracked->votes.clear();
-  const std::vector<cv::Point2f>& points = ours.features->points;
-  if (!HasMotion(tracked->estimate) || points.empty()) return;
-  const Camera& camera = images().camera;
-  const FrameTiming timing = tracked->twist.has_value()
-                                 ? frame.Timing(*tracked->twist)
-                                 : frame.Timing();
-  for (const FeatureMatches* part :
-       {&tracked->matches, &tracked->on_probation}) {
-    for (size_t i = 0; i < part->features.size(); ++i) {
-      const auto& [prev, cur] = part->matches[i];
-      if (prev.depth == 0.0 || cur.depth == 0.0) continue;
-      const Eigen::Vector3d point = tracked->estimate.cur_from_prev *
-                                    (camera.Ray(prev.u, prev.v) * prev.depth);
-      if (!(point.z() > 0.0)) continue;
-      const cv::Point2f& at = points[part->features[i]];
-      const Eigen::Vector2d before(at.x, at.y);
-      const Eigen::Vector2d expected = ImagePoint(camera, timing, point);
-      if ((expected - before).norm() < kTells) continue;
-      const Eigen::Vector2d seen =
-          ImagePoint(camera, timing, camera.Ray(cur.u, cur.v) * cur.depth);
-      const bool is_still = (seen - before).norm() < kStill;
-      if (!is_still && !((seen - expected).norm() < kLikeTheScene)) continue;
-      tracked->votes.push_back({cv::Point2f(static_cast<float>(seen.x()),
-                                            static_cast<float>(seen.y())),
-                                is_still});
-    }
-  }
 }
 
 void FeatureTracker::ChooseMotion(TrackingResult* tracked) {

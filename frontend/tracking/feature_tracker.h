@@ -66,9 +66,6 @@ class FeatureTracker final : public Tracker {
   // Sets what follows from the estimate.
   void Complete(const FeatureReference& reference,
                 TrackingResult* tracked) const;
-  // Fills tracked->votes.
-  void CastVotes(const FeatureReference& reference, const Frame& frame,
-                 TrackingResult* tracked) const;
   // Sets status and reason from the estimate.
   void Judge(TrackingResult* tracked) const;
 

@@ -150,7 +150,11 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
   if (result.status == TrackingStatus::kOk) {
-    state_.carried.Learn(size, attempts_.kept().votes);
+    const OdometryKeyframe* const reference = FindKeyframe(result.reference);
+    if (reference != nullptr) {
+      state_.carried.Learn(reference->frame, frame, camera,
+                           result.cur_from_reference);
+    }
   }
   state_.last.reset();
   if (result.status != TrackingStatus::kLost && !result.is_reference) {

@@ -9,6 +9,7 @@
 #include "frontend/features/frontend.h"
 #include "frontend/frame/stamp_jitter.h"
 #include "frontend/places/relocaliser.h"
+#include "frontend/tracking/carried_region.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/shutter_tracking.h"
 #include "frontend/tracking/tracked_frame.h"

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/estimation/correspondences.h"
 #include "core/estimation/frame_view.h"
@@ -12,7 +11,6 @@
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
 #include "frontend/frame/view_overlap.h"
-#include "frontend/tracking/carried_region.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/velocity_prior.h"
 
@@ -127,7 +125,6 @@ struct TrackingResult {
     covariance_factor = 1.0;
     matches.Clear();
     on_probation.Clear();
-    votes.clear();
   }
 
   // Whether tracking can continue from the motion.
@@ -169,10 +166,6 @@ struct TrackingResult {
 
   // Regions where features contradict the motion (feature trackers only).
   CellMask moving;
-
-  // Which features stood still in the image although the motion moves them
-  // (feature trackers only).
-  std::vector<CarriedRegion::Vote> votes;
 
   // What the motion was estimated from.
   TrackingSource source = TrackingSource::kFeatures;
