@@ -290,7 +290,7 @@ struct RollingWalk {
 TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
   const RollingWalk walk;
   Slam slam(walk.settings, {}, SmallCamera());
-  FrameRectifier rectifier(SmallCamera());
+  FrameRectifier rectifier(SmallCamera().camera);
   std::map<int, Frame> rectified;
   for (const Frame& frame : walk.frames) {
     const TrackedFrame tracked = slam.Track(frame).tracked;
