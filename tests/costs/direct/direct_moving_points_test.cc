@@ -110,36 +110,40 @@ TEST(MovingPointsTest, TexturedOnesShowWhatAGlobalShutterSees) {
   }
 }
 
+// How far the planes of a view are from those of another one that are closest
+// to them in the image, relative to their size.
+std::vector<double> OffFromPlanes(const Camera& camera,
+                                  const PackedColumns& planes,
+                                  const FrameView& view) {
+  std::vector<double> off;
+  const PackedColumns points = PointsOf(&SmoothPoints, view, 0);
+  for (int i = 0; i < points.size; ++i) {
+    const Eigen::Vector3d X = VectorAt(points, 0, i);
+    const Eigen::Vector3d N = VectorAt(points, 3, i);
+    EXPECT_NEAR(N.dot(X), 1.0, 1e-12);
+    double nearest = 8.0;  // px
+    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+    for (int k = 0; k < planes.size; ++k) {
+      const double distance =
+          (camera.Project(VectorAt(planes, 0, k)) - camera.Project(X)).norm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      expected = VectorAt(planes, 3, k);
+    }
+    if (!expected.isZero(0.0)) {
+      off.push_back((N - expected).norm() / expected.norm());
+    }
+  }
+  return off;
+}
+
 TEST(MovingPointsTest, PlanesAreThoseOfAGlobalShutter) {
   for (const double later : {0.0, 0.004}) {
     const Views views(later);
     const PackedColumns planes =
         PointsOf(&SmoothPoints, views.expected.view, 0);
-    // How far the planes of a view are from those of the expected one that are
-    // closest to them in the image, relative to their size.
     const auto off_of = [&](const FrameView& view) {
-      std::vector<double> off;
-      const PackedColumns points = PointsOf(&SmoothPoints, view, 0);
-      for (int i = 0; i < points.size; ++i) {
-        const Eigen::Vector3d X = VectorAt(points, 0, i);
-        const Eigen::Vector3d N = VectorAt(points, 3, i);
-        EXPECT_NEAR(N.dot(X), 1.0, 1e-12);
-        double nearest = 8.0;  // px
-        Eigen::Vector3d expected = Eigen::Vector3d::Zero();
-        for (int k = 0; k < planes.size; ++k) {
-          const double distance =
-              (views.camera.Project(VectorAt(planes, 0, k)) -
-               views.camera.Project(X))
-                  .norm();
-          if (distance >= nearest) continue;
-          nearest = distance;
-          expected = VectorAt(planes, 3, k);
-        }
-        if (!expected.isZero(0.0)) {
-          off.push_back((N - expected).norm() / expected.norm());
-        }
-      }
-      return off;
+      return OffFromPlanes(views.camera, planes, view);
     };
     const std::vector<double> off = off_of(views.moving.view);
     const std::vector<double> before = off_of(views.unmoved.view);
@@ -158,6 +162,20 @@ TEST(MovingPointsTest, PlanesAreThoseOfAGlobalShutter) {
     EXPECT_GT(Quantile(depth_of(views.unmoved.view), 0.9),
               3.0 * Quantile(depth, 0.9));
   }
+}
+
+// All rows at once, but not at the stamp: nothing is bent.
+TEST(MovingPointsTest, PlanesTurnWithTheCamera) {
+  const Camera camera = HandheldOptions().camera.camera;
+  DirectFrame late(HandheldFrame(kIndex, {}, {0.03, 0.0}), camera);
+  const DirectFrame expected(HandheldFrame(kIndex, {}, {}), camera);
+  const PackedColumns planes = PointsOf(&SmoothPoints, expected.view, 0);
+  const double off = Median(OffFromPlanes(camera, planes, late.view));
+  late.frame.twist.reset();
+  late.Build();
+  const double before = Median(OffFromPlanes(camera, planes, late.view));
+  EXPECT_LT(off, 0.005);
+  EXPECT_GT(before, 4.0 * off);
 }
 
 // Axes elsewhere change nothing but the axes.
