@@ -64,6 +64,25 @@ TEST_F(DirectSelectionTest, OnlyLevelsInUseAndOncePerId) {
   EXPECT_EQ(Selections(), (Levels{{1, 2}, {3, 2}}));
 }
 
+TEST_F(DirectSelectionTest, FramesThatAreUsedInTurnAreKept) {
+  constexpr int kInTurn = 20;  // as many as the odometry has keyframes
+  for (int round = 0; round < 3; ++round) {
+    for (uint64_t id = 1; id <= kInTurn; ++id) Use(id, 0);
+    EXPECT_EQ(Selections(), (Levels{{1, kInTurn}}));
+  }
+  cost_.Bind(FramePair());
+  Use(1, 0);
+  EXPECT_EQ(Selections(), (Levels{{1, kInTurn}}));
+  // One that was not used for long is selected again, the latest are kept.
+  constexpr int kMany = 100;
+  for (uint64_t id = 101; id <= 100 + kMany; ++id) Use(id, 0);
+  EXPECT_EQ(Selections(), (Levels{{1, kInTurn + kMany}}));
+  Use(100 + kMany - 1, 0);
+  EXPECT_EQ(Selections(), (Levels{{1, kInTurn + kMany}}));
+  Use(1, 0);
+  EXPECT_EQ(Selections(), (Levels{{1, kInTurn + kMany + 1}}));
+}
+
 TEST_F(DirectSelectionTest, WithoutAnIdOncePerBoundPair) {
   Use(0, 0);
   Use(0, 0);
