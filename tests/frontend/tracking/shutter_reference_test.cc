@@ -73,8 +73,10 @@ PreparedFrame FrameAt(double timestamp, const std::optional<Twist>& twist) {
 class ShutterReferenceTest : public ::testing::Test {
  protected:
   // Follows a frame of a camera with a constant velocity `twist` after a frame
-  // that became a reference with the velocity `first`.
-  void Follow(const std::optional<Twist>& first, const Twist& twist) {
+  // that became a reference with the velocity `first`. `guess`: of the
+  // velocity.
+  void Follow(const std::optional<Twist>& first, const Twist& twist,
+              const std::optional<Twist>& guess = std::nullopt) {
     reference_.frame = FrameAt(0.0, first);
     reference_.reference = std::make_unique<EmptyReference>();
     ShutterTracking shutter(&tracker_);
@@ -96,7 +98,7 @@ class ShutterReferenceTest : public ::testing::Test {
     };
     const PreparedFrame* const found =
         shutter.Follow(FrameAt(kInterval, std::nullopt), kInterval, Rigid3d(),
-                       std::nullopt, &reference_, tracked, find, find_again);
+                       guess, &reference_, tracked, find, find_again);
     ASSERT_NE(found, nullptr);
     found_ = *found;
   }
@@ -123,6 +125,13 @@ TEST_F(ShutterReferenceTest, WithoutAVelocityItGetsThatSinceThen) {
   EXPECT_LT(last.reference_from_stamp.Angle(), 1e-7);
   EXPECT_EQ(reference_.frame.twist->angular, last.twist.angular);
   EXPECT_EQ(found_.twist->linear, kHand.linear);
+}
+
+TEST_F(ShutterReferenceTest, WithoutAVelocityItGetsTheGuessFirst) {
+  Follow(std::nullopt, kHand, kHand);
+  ASSERT_EQ(tracker_.moves.size(), 1u);
+  EXPECT_EQ(tracker_.moves[0].twist.linear, kHand.linear);
+  EXPECT_EQ(num_corrected_, 0) << "the guess was right";
 }
 
 // Its pose is that of the middle row, which was found with another velocity.
