@@ -40,6 +40,7 @@ inline KeyframeMap NoiseMap(int keyframes, int seed) {
                              i / 3,
                              pose,
                              {},
+                             {},
                              StoredImages(NoiseFrame(100 * seed + i)),
                              MotionMatrix::Constant(i * M_PI)});
     if (i == 0) continue;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -44,19 +45,51 @@ TEST(CameraTest, DistortsAsOpenCvDocuments) {
 }
 
 TEST(CameraTest, UndistortInvertsProjectEverywhereInTheImage) {
-  constexpr double kTolerancePx = 1e-9;
+  constexpr double kTolerancePx = 1e-10;
   for (const std::string& name : CameraPresetNames()) {
     const Camera camera = CameraPreset(name)->camera;
-    for (int v = 0; v < camera.height; v += 37) {
-      for (int u = 0; u < camera.width; u += 41) {
+    double largest = 0.0;
+    for (int v = 0; v < camera.height; ++v) {
+      for (int u = 0; u < camera.width; ++u) {
         const Vector3d point = camera.Unproject(Vector2d(u, v), 1.7);
-        EXPECT_DOUBLE_EQ(point.z(), 1.7);
-        const Vector2d back = camera.Project(point);
-        EXPECT_NEAR(back.x(), u, kTolerancePx) << name;
-        EXPECT_NEAR(back.y(), v, kTolerancePx) << name;
+        ASSERT_EQ(point.z(), 1.7);
+        const double error = (camera.Project(point) - Vector2d(u, v)).norm();
+        ASSERT_TRUE(error >= 0.0) << name << " at " << u << ", " << v;
+        largest = std::max(largest, error);
+      }
+    }
+    EXPECT_LT(largest, kTolerancePx) << name;
+  }
+}
+
+// r - 0.3 r^3 rises up to r = 1 / sqrt(0.9) only. No ray is seen outside, and
+// points beyond that radius, which would be seen inside again, are not meant.
+TEST(CameraTest, UndistortGivesNothingBeyondWhereTheLensFolds) {
+  constexpr double kTolerancePx = 1e-10;
+  // Some 0.1 px at the fold, where steps of Newton's method are no use.
+  constexpr double kBand = 1e-3;
+  Camera camera = {640, 480, 320.0, 320.0, 319.5, 239.5, -0.3};
+  const double fold = 1.0 / std::sqrt(0.9);
+  const double last_seen = fold * (1.0 - 0.3 * fold * fold);
+  int inside = 0, outside = 0;
+  for (int v = 0; v < camera.height; v += 3) {
+    for (int u = 0; u < camera.width; u += 3) {
+      const Vector2d pixel(u, v);
+      const double seen = camera.Ray(u, v).head<2>().norm();
+      const Vector2d ideal = camera.Undistort(pixel);
+      if (seen > last_seen) {
+        EXPECT_TRUE(std::isnan(ideal.x()) && std::isnan(ideal.y())) << pixel;
+        ++outside;
+      } else if (seen < last_seen - kBand) {
+        const Vector3d ray = camera.Ray(ideal.x(), ideal.y());
+        EXPECT_LT((camera.Project(ray) - pixel).norm(), kTolerancePx) << pixel;
+        EXPECT_LT(ray.head<2>().norm(), fold) << pixel;
+        ++inside;
       }
     }
   }
+  EXPECT_GT(inside, 10000);
+  EXPECT_GT(outside, 10000);
 }
 
 TEST(CameraTest, ChecksItsParameters) {

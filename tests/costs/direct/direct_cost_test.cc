@@ -145,9 +145,10 @@ TEST_P(DirectCostTest, PointsAreKeptForFramesOfOneId) {
   // Without an id (0), points are computed each time.
   EXPECT_EQ(linearised(other.prev.view, 0), of_other);
   EXPECT_EQ(linearised(pair.prev.view, 0), first);
-  // A pair without images clears the stored points.
+  // A pair without images changes nothing of this.
   cost->Bind(FramePair());
-  EXPECT_EQ(linearised(other.prev.view, 3), of_other);
+  EXPECT_EQ(linearised(other.prev.view, 3), first);
+  EXPECT_EQ(linearised(other.prev.view, 4), of_other);
 }
 
 TEST_P(DirectCostTest, AViewWithoutItsDepthNoiseIsRefused) {

@@ -8,42 +8,15 @@
 #include <vector>
 
 #include "core/util/quantile.h"
-#include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/simulation/synthetic_path.h"
+#include "tests/support/rolling_frame.h"
 
 namespace rgbd_pose {
 namespace {
 
 constexpr int kIndex = 30;
 
-SyntheticOptions HandheldOptions() {
-  SyntheticOptions options;
-  options.path = "handheld";
-  options.frames = 60;
-  options.noise = false;
-  options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
-  return options;
-}
-
-// The path's velocity at the time stamp.
-Twist TwistOfPath() {
-  constexpr double kStep = 1e-3;  // s
-  const SyntheticPath path = FindSyntheticPath("handheld");
-  const double t = kIndex / HandheldOptions().rate_hz;
-  const double duration =
-      (HandheldOptions().frames - 1) / HandheldOptions().rate_hz;
-  return TwistOf(
-      path(t + kStep, duration).Inverse() * path(t - kStep, duration),
-      2.0 * kStep);
-}
-
 Frame Seen(const Shutter& color, const Shutter& depth) {
-  SyntheticOptions options = HandheldOptions();
-  options.color_shutter = color;
-  options.depth_shutter = depth;
-  Frame frame = SyntheticDataset(options).Read(kIndex);
-  frame.twist = TwistOfPath();
-  return frame;
+  return HandheldFrame(kIndex, color, depth);
 }
 
 // Only pixels away from the border, which are in view in both images.
@@ -110,12 +83,11 @@ TEST(FrameRectifierTest, MakesWhatAGlobalShutterSees) {
 // Rectifies to 4 ms after the time stamp.
 TEST(FrameRectifierTest, MakesWhatIsSeenFromAPlaceNearby) {
   constexpr double kLater = 0.004;
-  constexpr double kMiddle = -0.0075;
   Frame expected = Seen({kLater, 0.0}, {kLater, 0.0});
-  const Frame rolling = Seen({kMiddle, 0.028}, {-0.018, 0.028});
+  const Frame rolling = Seen({-0.0075, 0.028}, {-0.018, 0.028});
   FrameRectifier rectifier(HandheldOptions().camera.camera);
   const Frame rectified =
-      rectifier.Rectify(rolling, rolling.twist->MotionDuring(kLater - kMiddle));
+      rectifier.Rectify(rolling, rolling.twist->MotionDuring(kLater));
   ExpectLike(rectified, expected, rolling);
 }
 

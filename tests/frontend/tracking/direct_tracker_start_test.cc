@@ -6,10 +6,12 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "costs/direct_cost_factory.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/direct_tracker.h"
+#include "frontend/tracking/tracker_factory.h"
 #include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
@@ -112,6 +114,60 @@ TEST_F(CoarseStartTest, IsTheGuessWhereTooFewAgree) {
   const Rigid3d start = StartOf(ref_, other, guess);
   EXPECT_EQ(start.translation, guess.translation);
   EXPECT_EQ(start.rotation.coeffs(), guess.rotation.coeffs());
+}
+
+// The same for two frames in a row, of which the first need not be a reference.
+TEST_F(CoarseStartTest, FindsTheMotionBetweenTwoFrames) {
+  constexpr double kSomePx = 3.0;
+  const auto align = [&](const Rigid3d& start) {
+    return tracker_.AlignCoarsely(PreparedFrame(ref_), PreparedFrame(cur_),
+                                  start);
+  };
+  const auto found = align(Rigid3d());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT(ErrorPx(*found), kSomePx);
+  for (int i = 0; i < 3; ++i) {
+    const auto from_afar = align(OffBy(20.0, Eigen::Vector3d::Unit(i)));
+    ASSERT_TRUE(from_afar.has_value());
+    EXPECT_LT(ErrorPx(*from_afar), kSomePx);
+  }
+}
+
+TEST_F(CoarseStartTest, SaysNothingOfTwoFramesThatShowNothing) {
+  const auto align = [&](const Frame& prev, const Frame& cur) {
+    return tracker_.AlignCoarsely(PreparedFrame(prev), PreparedFrame(cur),
+                                  Rigid3d());
+  };
+  const auto black = [](Frame frame) {
+    frame.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));
+    frame.depth = cv::Mat(frame.depth.size(), CV_16UC1, cv::Scalar(0));
+    return frame;
+  };
+  EXPECT_FALSE(align(black(ref_), black(cur_)).has_value());
+  EXPECT_FALSE(align(ref_, black(cur_)).has_value());
+  EXPECT_FALSE(align(black(ref_), cur_).has_value());
+  // Another place: its pixels do not agree.
+  Frame other = cur_;
+  cv::rotate(cur_.gray, other.gray, cv::ROTATE_180);
+  cv::rotate(cur_.depth, other.depth, cv::ROTATE_180);
+  EXPECT_FALSE(align(ref_, other).has_value());
+}
+
+TEST_F(CoarseStartTest, EveryTrackerWithPixelsAlignsTwoFrames) {
+  const PreparedFrame ref(ref_), cur(cur_);
+  const auto expected = tracker_.AlignCoarsely(ref, cur, Rigid3d());
+  ASSERT_TRUE(expected.has_value());
+  for (const std::string& name : TrackerNames()) {
+    const auto found = MakeTracker(name, PartsFor(camera_))
+                           ->AlignCoarsely(ref, cur, Rigid3d());
+    ASSERT_TRUE(found.has_value()) << name;
+    EXPECT_EQ(found->translation, expected->translation) << name;
+  }
+  TrackerParts parts = PartsFor(camera_);
+  parts.direct_estimators.reset();
+  EXPECT_FALSE(MakeTracker("features", std::move(parts))
+                   ->AlignCoarsely(ref, cur, Rigid3d())
+                   .has_value());
 }
 
 // A guess with a small covariance is kept.

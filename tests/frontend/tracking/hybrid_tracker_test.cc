@@ -55,7 +55,7 @@ TEST(HybridTrackerTest, ARefinementThatIsLeftCanBeMadeLater) {
   EXPECT_EQ(later.source, TrackingSource::kFeatures);
   EXPECT_TRUE(later.needs_refinement);
   EXPECT_NE(later.estimate.covariance, at_once.estimate.covariance);
-  tracker->Refine(*reference, next, &later);
+  tracker->Refine(*reference, next, guess, &later);
   EXPECT_EQ(later.source, TrackingSource::kBoth);
   EXPECT_FALSE(later.needs_refinement);
   EXPECT_EQ(later.estimate.covariance, at_once.estimate.covariance);

@@ -47,6 +47,9 @@ class ScriptedTracker final : public Tracker {
                                            std::string* /*why_not*/) override {
     return std::make_unique<EmptyReference>();
   }
+  void MoveReference(const PreparedFrame& /*frame*/,
+                     const Rigid3d& /*reference_from_stamp*/,
+                     Reference* /*reference*/) const override {}
 
   void Track(const Reference& /*reference*/, const PreparedFrame& /*frame*/,
              const TrackingGuess& guess, TrackingResult* tracked) override {
@@ -56,6 +59,7 @@ class ScriptedTracker final : public Tracker {
     tracked->status = outcome.quick;
     tracked->estimate.cur_from_prev = guess.cur_from_ref;
     tracked->estimate.iterations = 1;
+    tracked->match_ms = 1.0;
     ++num_tracked;
     const bool is_good = outcome.quick == Status::kOk;
     tracked->is_ambiguous = outcome.is_ambiguous;
@@ -67,10 +71,21 @@ class ScriptedTracker final : public Tracker {
     }
   }
 
+  // Moves on from the guess by 10 m.
+  void TrackAgain(const Reference& /*reference*/,
+                  const PreparedFrame& /*frame*/, const TrackingGuess& guess,
+                  TrackingResult* tracked) override {
+    tracked->estimate.cur_from_prev = At(10.0) * guess.cur_from_ref;
+    tracked->estimate.iterations = 2;
+    tracked->match_ms += 0.25;
+    ++num_again;
+  }
+
   const FrontendOptions& images() const override { return images_; }
 
   int num_tracked = 0;
   int num_slow = 0;
+  int num_again = 0;
 
  private:
   FrontendOptions images_;
@@ -160,6 +175,26 @@ TEST(TrackingAttemptsTest, ADoubtfulPoseIsBetterThanNone) {
   EXPECT_EQ(attempt.kept, kSecond);
   EXPECT_EQ(attempt.status, Status::kDegraded);
   EXPECT_EQ(TryInTurn(kNone, kNone).kept, 0.0);
+}
+
+TEST(TrackingAttemptsTest, ACorrectionReplacesThePoseAndAddsItsTime) {
+  ScriptedTracker tracker(kGood, kNone, kNone);
+  TrackingAttempts attempts(&tracker);
+  OdometryKeyframe keyframe;
+  keyframe.reference = std::make_unique<EmptyReference>();
+  TrackedFrame result;
+  const PreparedFrame frame{Frame()};
+  ASSERT_TRUE(attempts.Try(frame, keyframe, At(kFirst), &result));
+  const TrackingResult first = attempts.kept();
+  ASSERT_TRUE(attempts.TryAgain(frame, keyframe, At(kFirst), &result));
+  EXPECT_EQ(attempts.kept().estimate.cur_from_prev.translation.x(),
+            kFirst + 10.0);
+  EXPECT_EQ(result.iterations, 3);
+  EXPECT_EQ(result.match_ms, 1.25);  // the time of Track counts once
+  EXPECT_EQ(tracker.num_tracked, 1);
+  EXPECT_EQ(tracker.num_again, 1);
+  attempts.Restore(first);
+  EXPECT_EQ(attempts.kept().estimate.cur_from_prev.translation.x(), kFirst);
 }
 
 }  // namespace

@@ -1,0 +1,170 @@
+// When and by which velocity a reference with rolling shutters is moved. The
+// tracker of these tests finds the motion that it is told.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frontend/tracking/shutter_tracking.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kInterval = 1.0 / 30.0;  // s
+constexpr double kMiddle = -0.0075;       // s, exposure of the middle row
+constexpr double kTolerance = 0.03;       // relative: three rounds
+
+struct EmptyReference final : Reference {
+  Overlap SeenFrom(const Rigid3d& /*cur_from_ref*/) const override {
+    return {};
+  }
+};
+
+struct Move {
+  Twist twist;
+  Rigid3d reference_from_stamp;
+};
+
+// Keeps how its reference was moved.
+class MovingTracker final : public Tracker {
+ public:
+  MovingTracker() {
+    images_.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
+  }
+  void Prepare(const PreparedFrame& /*frame*/) const override {}
+  std::unique_ptr<Reference> MakeReference(const PreparedFrame& /*frame*/,
+                                           const Reference* /*last*/,
+                                           const TrackingResult* /*tracked*/,
+                                           std::string* /*why_not*/) override {
+    return std::make_unique<EmptyReference>();
+  }
+  void MoveReference(const PreparedFrame& frame,
+                     const Rigid3d& reference_from_stamp,
+                     Reference* /*reference*/) const override {
+    moves.push_back({*frame.twist, reference_from_stamp});
+  }
+  void Track(const Reference& /*reference*/, const PreparedFrame& /*frame*/,
+             const TrackingGuess& /*guess*/,
+             TrackingResult* /*tracked*/) override {}
+  void TrackAgain(const Reference& /*reference*/,
+                  const PreparedFrame& /*frame*/,
+                  const TrackingGuess& /*guess*/,
+                  TrackingResult* /*tracked*/) override {}
+  const FrontendOptions& images() const override { return images_; }
+
+  mutable std::vector<Move> moves;
+
+ private:
+  FrontendOptions images_;
+};
+
+PreparedFrame FrameAt(double timestamp, const std::optional<Twist>& twist) {
+  Frame frame;
+  frame.timestamp = timestamp;
+  frame.color_shutter = {kMiddle, 0.028};
+  frame.depth_shutter = {-0.018, 0.028};
+  frame.twist = twist;
+  return PreparedFrame(frame);
+}
+
+class ShutterReferenceTest : public ::testing::Test {
+ protected:
+  // Follows a frame of a camera with a constant velocity `twist` after a frame
+  // that became a reference with the velocity `first`. `guess`: of the
+  // velocity.
+  void Follow(const std::optional<Twist>& first, const Twist& twist,
+              const std::optional<Twist>& guess = std::nullopt) {
+    reference_.frame = FrameAt(0.0, first);
+    reference_.reference = std::make_unique<EmptyReference>();
+    ShutterTracking shutter(&tracker_);
+    if (first.has_value()) shutter.velocity()->Add(*first, 0.0, kMiddle);
+    shutter.AddReference(reference_);
+    TrackingResult tracked(tracker_.images().camera);
+    tracked.estimate.cur_from_prev = twist.MotionDuring(kInterval);
+    const auto find = [&](const PreparedFrame& /*frame*/,
+                          const VelocityPrior* velocity) {
+      tracked.twist.reset();
+      if (velocity != nullptr) tracked.twist = twist;
+      return true;
+    };
+    const auto find_again = [&](const PreparedFrame& frame,
+                                const VelocityPrior& velocity,
+                                const Rigid3d& /*cur_from_ref*/) {
+      ++num_corrected_;
+      return find(frame, &velocity);
+    };
+    const PreparedFrame* const found =
+        shutter.Follow(FrameAt(kInterval, std::nullopt), kInterval, Rigid3d(),
+                       guess, &reference_, tracked, find, find_again);
+    ASSERT_NE(found, nullptr);
+    found_ = *found;
+  }
+
+  MovingTracker tracker_;
+  OdometryKeyframe reference_;
+  PreparedFrame found_;
+  int num_corrected_ = 0;
+};
+
+const Twist kHand = {{0.3, -0.5, 0.2}, {0.2, 0.3, -0.1}};
+
+TEST_F(ShutterReferenceTest, WithoutAVelocityItGetsThatSinceThen) {
+  Follow(std::nullopt, kHand);
+  ASSERT_GE(tracker_.moves.size(), 2u);
+  EXPECT_EQ(static_cast<int>(tracker_.moves.size()), num_corrected_);
+  const Move& last = tracker_.moves.back();
+  EXPECT_LT((last.twist.angular - kHand.angular).norm(),
+            kTolerance * kHand.angular.norm());
+  EXPECT_LT((last.twist.linear - kHand.linear).norm(),
+            kTolerance * kHand.linear.norm());
+  // Its pose counts as that at the stamp.
+  EXPECT_LT(last.reference_from_stamp.translation.norm(), 1e-12);
+  EXPECT_LT(last.reference_from_stamp.Angle(), 1e-7);
+  EXPECT_EQ(reference_.frame.twist->angular, last.twist.angular);
+  EXPECT_EQ(found_.twist->linear, kHand.linear);
+}
+
+TEST_F(ShutterReferenceTest, WithoutAVelocityItGetsTheGuessFirst) {
+  Follow(std::nullopt, kHand, kHand);
+  ASSERT_EQ(tracker_.moves.size(), 1u);
+  EXPECT_EQ(tracker_.moves[0].twist.linear, kHand.linear);
+  EXPECT_EQ(num_corrected_, 0) << "the guess was right";
+}
+
+// Its pose is that of the middle row, which was found with another velocity.
+TEST_F(ShutterReferenceTest, WithAnotherVelocityItsAxesLeaveTheStamp) {
+  const Twist first = 0.5 * kHand;
+  Follow(first, kHand);
+  ASSERT_GE(tracker_.moves.size(), 1u);
+  const Move& last = tracker_.moves.back();
+  const Rigid3d expected =
+      first.MotionDuring(kMiddle).Inverse() * last.twist.MotionDuring(kMiddle);
+  const Rigid3d off = expected.Inverse() * last.reference_from_stamp;
+  EXPECT_LT(off.translation.norm(), 1e-12);
+  EXPECT_LT(off.Angle(), 1e-7);
+  EXPECT_GT(last.reference_from_stamp.Angle(), 0.001);
+  EXPECT_EQ(reference_.reference_from_stamp.translation,
+            last.reference_from_stamp.translation);
+}
+
+TEST_F(ShutterReferenceTest, ASmallChangeMovesNothing) {
+  Follow(kHand, 1.01 * kHand);
+  EXPECT_TRUE(tracker_.moves.empty());
+  EXPECT_EQ(num_corrected_, 0);
+}
+
+// A wrong motion is no reason to move a reference that others are tracked
+// against later.
+TEST_F(ShutterReferenceTest, AMotionThatNoHandMakesLeavesItWhereItWas) {
+  Follow(kHand, {{}, {30.0, 0.0, 0.0}});
+  EXPECT_FALSE(found_.twist.has_value());
+  EXPECT_LT(reference_.frame.twist->linear.norm(), 4.0);
+  if (tracker_.moves.empty()) return;
+  EXPECT_LT(tracker_.moves.back().twist.linear.norm(), 4.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

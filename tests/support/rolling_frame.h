@@ -1,0 +1,55 @@
+#pragma once
+
+#include "frontend/frame/frame.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/simulation/synthetic_path.h"
+
+// Frames of a small camera in the hand, rendered without noise, with any
+// shutter and with the velocity that the path has.
+
+namespace rgbd_pose {
+
+inline SyntheticOptions HandheldOptions() {
+  SyntheticOptions options;
+  options.path = "handheld";
+  options.frames = 60;
+  options.noise = false;
+  options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
+  return options;
+}
+
+// The path's velocity at the time stamp of a frame.
+inline Twist TwistOfPath(int index) {
+  constexpr double kStep = 1e-3;  // s
+  const SyntheticOptions options = HandheldOptions();
+  const SyntheticPath path = FindSyntheticPath(options.path);
+  const double t = index / options.rate_hz;
+  const double duration = (options.frames - 1) / options.rate_hz;
+  return TwistOf(
+      path(t + kStep, duration).Inverse() * path(t - kStep, duration),
+      2.0 * kStep);
+}
+
+// A frame with its velocity.
+inline Frame HandheldFrame(int index, const Shutter& color,
+                           const Shutter& depth) {
+  SyntheticOptions options = HandheldOptions();
+  options.color_shutter = color;
+  options.depth_shutter = depth;
+  Frame frame = SyntheticDataset(options).Read(index);
+  frame.twist = TwistOfPath(index);
+  return frame;
+}
+
+// A frame of a camera whose rows are exposed from the top, depth first.
+inline Frame RollingFrame(int index) {
+  return HandheldFrame(index, {-0.0075, 0.028}, {-0.018, 0.028});
+}
+
+// The motion between the time stamps of two frames.
+inline Rigid3d HandheldMotion(int ref, int cur) {
+  const SyntheticDataset dataset(HandheldOptions());
+  return dataset.WorldFromCam(cur).Inverse() * dataset.WorldFromCam(ref);
+}
+
+}  // namespace rgbd_pose
