@@ -112,8 +112,9 @@ class Odometry {
   }
 
   // Returns the keyframe with this id (TrackedFrame::reference); null if it is
-  // no longer kept. Images with rows exposed at different times are corrected
-  // to one moment; they are final once the next frame has been tracked.
+  // no longer kept. Its images are as measured; if rows were exposed at
+  // different times, its velocity (Frame::twist) and reference_from_stamp say
+  // where its points are. They are final once the next frame has been tracked.
   const OdometryKeyframe* FindKeyframe(int id) const {
     return keyframes_.Find(id);
   }
@@ -149,7 +150,7 @@ class Odometry {
   // Covariance of the motion due to the uncertain capture time at `twist`.
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
 
-  // Doubts a frame whose covariance was inflated far more than usual.
+  // Degrades a frame whose covariance was inflated far more than usual.
   void JudgeInflation(TrackedFrame* result);
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
