@@ -253,8 +253,8 @@ bool Odometry::Follow(const PreparedFrame& measured,
   state_.has_few_features = tracked.source == TrackingSource::kDirect ||
                             tracked.estimate.num_inliers < kFewFeatures;
   state_.twist = frame->twist;
-  if (attempts_.kept().twist.has_value()) {
-    state_.twist_covariance = attempts_.kept().twist_covariance;
+  if (tracked.twist.has_value()) {
+    state_.twist_covariance = tracked.twist_covariance;
   }
   state_.cur_from_prev = state_.is_lost ? Rigid3d()
                                         : last_estimate().cur_from_prev *
@@ -265,8 +265,9 @@ bool Odometry::Follow(const PreparedFrame& measured,
   }
   TakeMotion(result);
   if (state_.has_shutter) state_.shutter_tracking.Accept();
-  if (state_.earlier_segment.has_value())
+  if (state_.earlier_segment.has_value()) {
     ReturnToEarlierSegment(*frame, result);
+  }
   Accept(*frame, result);
   return true;
 }
@@ -298,8 +299,9 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   Rigid3d first = state_.cur_from_ref;
   Rigid3d second = state_.cur_from_prev * state_.cur_from_ref;
   std::optional<Rigid3d> aligned;
-  if (state_.aligned.has_value())
+  if (state_.aligned.has_value()) {
     aligned = *state_.aligned * state_.cur_from_ref;
+  }
   const auto track = [&](const PreparedFrame& frame,
                          const VelocityPrior* velocity) {
     const auto from = [&](const Rigid3d& cur_from_ref) {
@@ -366,8 +368,9 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   const MotionEstimate& estimate = last_estimate();
   state_.cur_from_ref = estimate.cur_from_prev;
   state_.covariance = estimate.covariance;
-  if (!attempts_.kept().twist.has_value())
+  if (!attempts_.kept().twist.has_value()) {
     state_.covariance += state_.twist_covariance;
+  }
   state_.covariance +=
       state_.timing_covariance + state_.reference->timing_covariance;
   result->cur_from_reference = state_.cur_from_ref;
