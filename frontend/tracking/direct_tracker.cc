@@ -107,9 +107,15 @@ std::optional<Rigid3d> DirectTracker::AlignCoarsely(
   Estimate(view, cur, cur_from_prev_start,
            PriorOf(options_, cur_from_prev_start), nullptr,
            &*estimators_.coarse, &start_);
+  // Where one of the images is black, all points agree, with any motion.
+  constexpr double kLessThanPrior = 0.5;
+  const double most = kLessThanPrior * options_.prior_sigma_rotation;
+  const double variance = start_.covariance.diagonal().head<3>().minCoeff();
+  if (HasMotion(start_) && !(variance < most * most)) return std::nullopt;
+  if (HasMotion(start_)) return start_.cur_from_prev;
   // Blur lets fewer points agree, but two frames in a row are never far apart.
   constexpr double kMinShare = 0.5;
-  if (start_.num_used == 0 ||
+  if (start_.status != EstimateStatus::kInconsistent ||
       start_.num_inliers < kMinShare * start_.num_used) {
     return std::nullopt;
   }
