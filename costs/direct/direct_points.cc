@@ -205,6 +205,7 @@ void SmoothPoints(const FrameView& frame, int /*level*/,
   const FrameTiming& timing = frame.timing;
   const bool moves = !timing.IsOneMoment();
   const int width = frame.depth.width, height = frame.depth.height;
+  const double per_row = timing.depth.readout / height;  // s
   const int cell =
       CellSize(static_cast<double>(width) * height, options.max_points);
   points->Clear(7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
@@ -221,8 +222,20 @@ void SmoothPoints(const FrameView& frame, int /*level*/,
       if (depth < options.min_depth || depth > options.max_depth) continue;
       Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
       const Eigen::Vector3d ray = X / depth;
-      const Eigen::Vector2d slope =
-          camera.ProjectDerivative(ray.head<2>()).transpose() * fit.slope;
+      Eigen::Matrix2d pixels = camera.ProjectDerivative(ray.head<2>());
+      Eigen::Vector2d by_pixel = fit.slope;
+      if (moves) {
+        // The next row is measured later, from where the camera is then.
+        Eigen::Vector3d velocity;
+        timing.twist.PointVelocity(X.data(), velocity.data());
+        const double shift = per_row * fit.inverse_depth;
+        Eigen::Matrix2d rays = pixels.inverse();
+        rays.col(1) -=
+            shift * (velocity.head<2>() - velocity.z() * ray.head<2>());
+        by_pixel.y() += shift * fit.inverse_depth * velocity.z();
+        pixels = rays.inverse();
+      }
+      const Eigen::Vector2d slope = pixels.transpose() * by_pixel;
       Eigen::Vector3d N(slope.x(), slope.y(),
                         fit.inverse_depth - slope.dot(ray.head<2>()));
       if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;
