@@ -201,8 +201,8 @@ class Tracker {
                              const Rigid3d& reference_from_stamp,
                              Reference* reference) const = 0;
 
-  // Aligns coarse images of two frames in a row. Returns nothing if they do not
-  // determine the motion. No verdict on details: it may be some pixels off.
+  // Aligns coarse images of two frames in a row. The motion may be some pixels
+  // off. Returns nothing if the images do not determine it.
   virtual std::optional<Rigid3d> AlignCoarsely(
       const PreparedFrame& /*prev*/, const PreparedFrame& /*cur*/,
       const Rigid3d& /*cur_from_prev_start*/) {
