@@ -182,11 +182,8 @@ void DirectTracker::FindTwist(const Reference& reference,
              PriorOf(options_, guess), nullptr, &estimators_.refining,
              estimate);
   }
-  tracked->twist = seen.twist;
-  tracked->twist_covariance =
-      MotionCovarianceOfTwist(seen.Timing(), guess.velocity->sigma_angular,
-                              guess.velocity->sigma_linear);
-  estimate->covariance += tracked->twist_covariance;
+  tracked->velocity = ExpectedTwist(seen.Timing(), *guess.velocity);
+  estimate->covariance += tracked->velocity->motion_covariance;
 }
 
 Rigid3d DirectTracker::FindStart(const Reference& reference,

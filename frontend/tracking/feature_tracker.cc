@@ -7,7 +7,6 @@
 #include "core/util/stage_timer.h"
 #include "frontend/frame/observe.h"
 #include "frontend/tracking/correlated_errors.h"
-#include "frontend/tracking/twist_estimation.h"
 
 namespace rgbd_pose {
 namespace {
@@ -134,7 +133,7 @@ void FeatureTracker::Track(const Reference& reference,
   if (guess.velocity != nullptr && tracked->estimate.ok() &&
       ShareOf(ours, *tracked) < kFewFound) {
     const Rigid3d found = tracked->estimate.cur_from_prev;
-    track(frame.WithTwist(tracked->twist), found, found);
+    track(frame.WithTwist(tracked->velocity->twist), found, found);
   }
   Complete(ours, tracked);
 }
@@ -224,16 +223,14 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
   seen.twist = frame.twist.value_or(Twist());
   // If the velocity is unknown, nothing has been moved yet.
   FrameTiming moved_by = frame.Timing();
-  // The covariance if the motion is too doubtful to estimate the velocity.
-  tracked->twist_covariance = MotionCovarianceOfTwist(
-      seen.Timing(), velocity.sigma_angular, velocity.sigma_linear);
+  // If the motion is too doubtful to estimate the velocity.
+  TwistEstimate found = ExpectedTwist(seen.Timing(), velocity);
   for (int round = 0; round < kMaxRounds && estimate.ok(); ++round) {
-    const TwistEstimate found = EstimateTwist(
-        tracked->matches.matches, estimate.is_inlier, estimate.sigma,
-        estimate.cur_from_prev, seen.Timing(),
-        velocity.Mean(estimate.cur_from_prev, moved_by.twist), velocity);
-    tracked->twist_covariance =
-        found.motion_covariance +
+    found = EstimateTwist(tracked->matches.matches, estimate.is_inlier,
+                          estimate.sigma, estimate.cur_from_prev, seen.Timing(),
+                          velocity.Mean(estimate.cur_from_prev, moved_by.twist),
+                          velocity);
+    found.motion_covariance +=
         MotionCovarianceOfAcceleration(seen.Timing(), velocity);
     const Twist change = found.twist - moved_by.twist;
     if (LargestFlow(images().camera, seen.Timing(), change) < kSmallFlowPx) {
@@ -252,8 +249,9 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
     moved_by = seen.Timing();
     Estimate(estimate.cur_from_prev, tracked);
   }
-  tracked->twist = moved_by.twist;
-  tracked->estimate.covariance += tracked->twist_covariance;
+  found.twist = moved_by.twist;
+  tracked->velocity = found;
+  tracked->estimate.covariance += found.motion_covariance;
 }
 
 void FeatureTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {

@@ -24,7 +24,8 @@ bool Agree(const TrackingResult& tracked, const MotionEstimate& pixels) {
 // The frame with the velocity that was found with its motion.
 PreparedFrame WithVelocity(const PreparedFrame& frame,
                            const TrackingResult& tracked) {
-  return tracked.twist.has_value() ? frame.WithTwist(tracked.twist) : frame;
+  return tracked.velocity.has_value() ? frame.WithTwist(tracked.velocity->twist)
+                                      : frame;
 }
 
 // One of the two may be null.
@@ -166,7 +167,9 @@ bool HybridTracker::RefineByPixels(const Reference& direct,
                                    TrackingResult* tracked) {
   direct_->RefineWithMatches(direct, WithVelocity(frame, *tracked), *tracked,
                              &pixels_);
-  pixels_.estimate.covariance += tracked->twist_covariance;
+  if (tracked->velocity.has_value()) {
+    pixels_.estimate.covariance += tracked->velocity->motion_covariance;
+  }
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
   if (pixels_.status != TrackingStatus::kOk ||

@@ -12,6 +12,9 @@ namespace rgbd_pose {
 // A keyframe that frames are tracked against. Its id is TrackedFrame::index.
 struct OdometryKeyframe : Keyframe {
   std::unique_ptr<Reference> reference;  // made by the tracker in use
+
+  // Covariance of Frame::twist (angular, then linear); 0 without a shutter.
+  MotionMatrix velocity_covariance = MotionMatrix::Zero();
 };
 
 // The latest keyframes, in case the view returns; the oldest is removed first.

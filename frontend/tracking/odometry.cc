@@ -253,8 +253,8 @@ bool Odometry::Follow(const PreparedFrame& measured,
   state_.has_few_features = tracked.source == TrackingSource::kDirect ||
                             tracked.estimate.num_inliers < kFewFeatures;
   state_.twist = frame->twist;
-  if (tracked.twist.has_value()) {
-    state_.twist_covariance = tracked.twist_covariance;
+  if (tracked.velocity.has_value()) {
+    state_.twist_covariance = tracked.velocity->motion_covariance;
   }
   state_.cur_from_prev = state_.is_lost ? Rigid3d()
                                         : last_estimate().cur_from_prev *
@@ -264,7 +264,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
         measured, TwistOf(state_.cur_from_prev, state_.interval));
   }
   TakeMotion(result);
-  if (state_.has_shutter) state_.shutter_tracking.Accept();
+  if (state_.has_shutter) state_.shutter_tracking.Accept(tracked);
   if (state_.earlier_segment.has_value()) {
     ReturnToEarlierSegment(*frame, result);
   }
@@ -368,7 +368,7 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   const MotionEstimate& estimate = last_estimate();
   state_.cur_from_ref = estimate.cur_from_prev;
   state_.covariance = estimate.covariance;
-  if (!attempts_.kept().twist.has_value()) {
+  if (!attempts_.kept().velocity.has_value()) {
     state_.covariance += state_.twist_covariance;
   }
   state_.covariance +=
@@ -433,7 +433,7 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
     return false;
   }
   state_.reference = added;
-  if (state_.has_shutter) state_.shutter_tracking.AddReference(*added);
+  if (state_.has_shutter) state_.shutter_tracking.AddReference(added);
   state_.cur_from_ref = Rigid3d();
   state_.covariance.setZero();
   result->is_reference = true;

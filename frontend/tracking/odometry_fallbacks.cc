@@ -61,7 +61,7 @@ bool Odometry::MakeLastReference(TrackedFrame* result) {
       AddKeyframe(*state_.last, nullptr, state_.reference, &why_not);
   if (added == nullptr) return false;
   state_.reference = added;
-  state_.shutter_tracking.AddReference(*added);
+  state_.shutter_tracking.AddReference(added);
   result->previous_is_reference = true;
   state_.last.reset();
   state_.cur_from_ref = Rigid3d();
@@ -86,12 +86,10 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
       result->status != TrackingStatus::kOk) {
     return false;
   }
-  // Another reference was waiting for a velocity.
-  state_.shutter_tracking.HandleLost();
-  state_.twist = attempts_.kept().twist;
-  if (state_.twist.has_value()) {
-    state_.shutter_tracking.velocity()->Add(*state_.twist, frame.timestamp,
-                                            frame.color_shutter.offset);
+  state_.shutter_tracking.Restart(frame, attempts_.kept());
+  state_.twist.reset();
+  if (attempts_.kept().velocity.has_value()) {
+    state_.twist = attempts_.kept().velocity->twist;
   }
   state_.reference = keyframe;
   if (state_.segment != keyframe->segment) state_.earlier_segment.reset();

@@ -11,7 +11,7 @@ namespace {
 // A reference is moved if the new velocity moves its pixels by this.
 constexpr double kSmallFlowPx = 0.2;
 
-// The velocities of the reference and of the next frame determine each other.
+// Rounds for the first two frames: each determines the velocity of the other.
 constexpr int kMaxRounds = 3;
 
 // A hand moves more slowly; a wrong estimate may be faster.
@@ -34,6 +34,7 @@ Twist VelocityBetween(const std::optional<Twist>& before, double before_s,
 
 void ShutterTracking::HandleLost() {
   between_.reset();
+  found_velocity_.reset();
   found_ = Found();
   early_.reset();
 }
@@ -56,30 +57,36 @@ const PreparedFrame* ShutterTracking::Follow(
   }
   const double middle = frame.color_shutter.offset;
   // Nothing is known of the velocity of the first reference yet.
-  if (first_guess.has_value() && early_.has_value() && early_->is_free) {
-    MoveReference(*first_guess, interval, reference);
+  if (first_guess.has_value() && early_.has_value() &&
+      !early_->velocity.has_value()) {
+    MoveReference(*first_guess, MotionMatrix::Zero(), interval, reference);
   }
   found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
-  VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
+  VelocityPrior prior = PriorOf(*reference, prev_from_ref, interval, middle);
   if (!track(*found_.frame, &prior)) return nullptr;
   const auto look = [&] {
-    if (tracked.twist.has_value()) {
-      found_.frame = frame.WithTwist(tracked.twist);
+    if (tracked.velocity.has_value()) {
+      found_.frame = frame.WithTwist(tracked.velocity->twist);
     }
     found_.prior = prior;
+    found_.velocity = tracked.velocity;
     Update(tracked);
   };
   look();
-  for (int round = 0; round < kMaxRounds && found_.between.has_value();
-       ++round) {
-    if (!MoveReference(*found_.between, interval, reference)) break;
-    prior = velocity_.Prior(prev_from_ref, interval, middle);
+  const int rounds = between_.has_value() ? 1 : kMaxRounds;
+  for (int round = 0; round < rounds && found_.between.has_value(); ++round) {
+    if (!MoveReference(*found_.between,
+                       CovarianceInCurrentAxes(tracked.estimate, nullptr),
+                       interval, reference)) {
+      break;
+    }
+    prior = PriorOf(*reference, prev_from_ref, interval, middle);
     const Rigid3d found = tracked.estimate.cur_from_prev;
     if (!track_again(*found_.frame, prior, found)) return nullptr;
     look();
-    if (early_->is_free) {
+    if (!early_->velocity.has_value() && found_.velocity.has_value()) {
       reference->timing_covariance =
-          early_->timing_covariance + tracked.twist_covariance;
+          early_->timing_covariance + found_.velocity->motion_covariance;
     }
   }
   if (!IsOfAHand(found_.between.value_or(Twist())) ||
@@ -96,7 +103,7 @@ void ShutterTracking::Update(const TrackingResult& refined) {
                                          found_.frame->twist.value_or(Twist()));
 }
 
-void ShutterTracking::Accept() {
+void ShutterTracking::Accept(const TrackingResult& refined) {
   early_.reset();
   if (found_.frame.has_value() && found_.frame->twist.has_value()) {
     velocity_.Add(*found_.frame->twist, found_.frame->timestamp,
@@ -104,13 +111,61 @@ void ShutterTracking::Accept() {
   }
   between_ = found_.between;
   interval_ = found_.interval;
+  found_velocity_ = found_.velocity;
+  motion_covariance_ = CovarianceInCurrentAxes(
+      refined.estimate, refined.velocity ? &*refined.velocity : nullptr);
 }
 
-bool ShutterTracking::MoveReference(const Twist& since, double interval,
+void ShutterTracking::Restart(const Frame& frame,
+                              const TrackingResult& tracked) {
+  HandleLost();
+  if (!tracked.velocity.has_value()) return;
+  velocity_.Add(tracked.velocity->twist, frame.timestamp,
+                frame.color_shutter.offset);
+  found_velocity_ = tracked.velocity;
+  motion_covariance_ =
+      CovarianceInCurrentAxes(tracked.estimate, &*found_velocity_);
+}
+
+VelocityPrior ShutterTracking::PriorOf(
+    const OdometryKeyframe& reference,
+    const std::optional<Rigid3d>& prev_from_ref, double interval,
+    double middle) const {
+  VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
+  prior.reference_covariance = reference.velocity_covariance;
+  return prior;
+}
+
+SmoothedFrame ShutterTracking::SmoothReference(const Twist& since,
+                                               const MotionMatrix& covariance,
+                                               double interval) const {
+  const bool has_before = early_->before.has_value();
+  MeanVelocity mean;
+  mean.twist =
+      VelocityBetween(early_->before, early_->interval, since, interval);
+  mean.seconds = interval + (has_before ? early_->interval : 0.0);
+  const VelocityPrior prior = velocity_.Prior(Rigid3d(), interval, 0.0);
+  mean.covariance =
+      has_before ? velocity_.CovarianceInTheMiddle(interval)
+                 : IndependentErrors(prior.sigma_angular, prior.sigma_linear);
+  const double per_second = 1.0 / mean.seconds;
+  mean.covariance += per_second * per_second * covariance;
+  if (!early_->velocity.has_value()) return {mean.twist, mean.covariance};
+  if (!has_before) {
+    return Smooth(*early_->velocity, MotionMatrix::Zero(), mean);
+  }
+  // The frame before it has been found about as exactly.
+  mean.covariance += per_second * per_second * early_->motion_covariance;
+  return Smooth(*early_->velocity, early_->motion_covariance, mean);
+}
+
+bool ShutterTracking::MoveReference(const Twist& since,
+                                    const MotionMatrix& covariance,
+                                    double interval,
                                     OdometryKeyframe* reference) {
   if (!early_.has_value() || !IsOfAHand(since)) return false;
-  const Twist twist =
-      VelocityBetween(early_->before, early_->interval, since, interval);
+  const SmoothedFrame smoothed = SmoothReference(since, covariance, interval);
+  const Twist& twist = smoothed.twist;
   Frame& frame = early_->frame;
   velocity_.Correct(twist, frame.timestamp);
   if (LargestFlow(tracker_->images().camera, frame.Timing(twist),
@@ -118,35 +173,35 @@ bool ShutterTracking::MoveReference(const Twist& since, double interval,
     return false;
   }
   frame.twist = twist;
-  const Rigid3d middle_from_stamp =
-      twist.MotionDuring(frame.color_shutter.offset);
-  if (early_->is_free) {
-    early_->target_from_middle = middle_from_stamp.Inverse();
-    velocity_.SetMiddle(middle_from_stamp);
-  }
+  // The axes of the reference stay where its pose has put them.
+  const Rigid3d stamp_from_reference = Rigid3d::FromRotationVector(
+      smoothed.change.head<3>(), smoothed.change.tail<3>());
+  velocity_.SetMiddle(twist.MotionDuring(frame.color_shutter.offset) *
+                      stamp_from_reference);
   reference->frame.twist = twist;
-  reference->reference_from_stamp =
-      early_->target_from_middle * middle_from_stamp;
+  reference->velocity_covariance = smoothed.covariance;
+  reference->reference_from_stamp = stamp_from_reference.Inverse();
   reference->features.reset();
   tracker_->MoveReference(reference->frame, reference->reference_from_stamp,
                           reference->reference.get());
   return true;
 }
 
-void ShutterTracking::AddReference(const Keyframe& reference) {
-  const Frame& frame = reference.frame;
+void ShutterTracking::AddReference(OdometryKeyframe* reference) {
+  const Frame& frame = reference->frame;
   early_ = EarlyReference{frame,
-                          frame.twist.value_or(Twist())
-                              .MotionDuring(frame.color_shutter.offset)
-                              .Inverse(),
-                          /*is_free=*/!frame.twist.has_value(),
+                          frame.twist ? found_velocity_ : std::nullopt,
+                          motion_covariance_,
                           between_,
                           interval_,
-                          reference.timing_covariance};
+                          reference->timing_covariance};
   for (cv::Mat* image :
        {&early_->frame.gray, &early_->frame.depth, &early_->frame.color}) {
     image->release();
   }
+  reference->velocity_covariance = early_->velocity.has_value()
+                                       ? early_->velocity->covariance
+                                       : VelocityModel::CovarianceOfUnknown();
 }
 
 }  // namespace rgbd_pose

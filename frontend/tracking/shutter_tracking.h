@@ -8,16 +8,18 @@
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/tracker.h"
 #include "frontend/tracking/velocity_prior.h"
+#include "frontend/tracking/velocity_smoothing.h"
 
 namespace rgbd_pose {
 
 // A reference whose velocity the next frame will determine. It is not nested in
 // ShutterTracking because clang 14 fails there.
 struct EarlyReference {
-  Frame frame;                 // without images
-  Rigid3d target_from_middle;  // from the camera when it saw the middle row
-  // The pose was found without a velocity, so it is valid at the stamp.
-  bool is_free = false;
+  Frame frame;  // without images
+  // As it was found with the pose; nothing: the pose was found without a
+  // velocity, so it is valid at the stamp.
+  std::optional<TwistEstimate> velocity;
+  MotionMatrix motion_covariance;  // see CovarianceInCurrentAxes
   std::optional<Twist> before;     // mean velocity in the interval before it
   double interval = 0.0;           // length of this interval, s
   MotionMatrix timing_covariance;  // of the reference, as first known
@@ -57,8 +59,12 @@ class ShutterTracking {
   // Corrects the result of the last Follow after its pose was refined.
   void Update(const TrackingResult& refined);
 
-  // Accepts the pose of the last Follow; the next frame continues from it.
-  void Accept();
+  // Accepts the pose of the last Follow, as refined; the next frame continues
+  // from it.
+  void Accept(const TrackingResult& refined);
+
+  // Continues from a frame whose pose was found without Follow, after a loss.
+  void Restart(const Frame& frame, const TrackingResult& tracked);
 
   // Call this if the last frame was not found.
   void HandleLost();
@@ -72,27 +78,40 @@ class ShutterTracking {
   // The velocity, for frames that are tracked without Follow.
   VelocityModel* velocity() { return &velocity_; }
 
-  // Registers a new reference, made of the last frame that was tracked.
-  void AddReference(const Keyframe& reference);
+  // Registers a new reference, made of the last frame that was tracked. Sets
+  // its velocity_covariance.
+  void AddReference(OdometryKeyframe* reference);
 
  private:
   // The result of the last Follow.
   struct Found {
     std::optional<PreparedFrame> frame;
     std::optional<VelocityPrior> prior;
+    std::optional<TwistEstimate> velocity;
     std::optional<Twist> between;  // mean velocity before the frame
     double interval = 0.0;         // over this interval, s
   };
 
-  // Moves the reference according to the mean velocity since then. Returns
-  // false if this has no advantage.
-  bool MoveReference(const Twist& since, double interval,
-                     OdometryKeyframe* reference);
+  VelocityPrior PriorOf(const OdometryKeyframe& reference,
+                        const std::optional<Rigid3d>& prev_from_ref,
+                        double interval, double middle) const;
+  // Moves the reference according to the mean velocity since then, whose
+  // covariance is due to that of the motion. Returns false if this has no
+  // advantage.
+  bool MoveReference(const Twist& since, const MotionMatrix& covariance,
+                     double interval, OdometryKeyframe* reference);
+  // What is known of its velocity and its motion after the mean velocity since
+  // then.
+  SmoothedFrame SmoothReference(const Twist& since,
+                                const MotionMatrix& covariance,
+                                double interval) const;
 
   const Tracker* tracker_;
   VelocityModel velocity_;
   std::optional<Twist> between_;  // mean velocity before the last frame
   double interval_ = 0.0;         // over this interval, s
+  std::optional<TwistEstimate> found_velocity_;            // of the last frame
+  MotionMatrix motion_covariance_ = MotionMatrix::Zero();  // in its axes
   std::optional<EarlyReference> early_;
   Found found_;
 };

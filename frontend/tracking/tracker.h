@@ -12,6 +12,7 @@
 #include "frontend/features/frontend.h"
 #include "frontend/frame/view_overlap.h"
 #include "frontend/tracking/tracked_frame.h"
+#include "frontend/tracking/twist_estimation.h"
 #include "frontend/tracking/velocity_prior.h"
 
 namespace rgbd_pose {
@@ -120,8 +121,7 @@ struct TrackingResult {
     match_ms = 0.0;
     is_ambiguous = false;
     needs_refinement = false;
-    twist.reset();
-    twist_covariance.setZero();
+    velocity.reset();
     covariance_factor = 1.0;
     matches.Clear();
     on_probation.Clear();
@@ -138,10 +138,7 @@ struct TrackingResult {
   Overlap overlap;
 
   // The velocity of the frame, found with the motion; nothing: unchanged.
-  std::optional<Twist> twist;
-
-  // The part of the motion's covariance due to the uncertainty of `twist`.
-  MotionMatrix twist_covariance = MotionMatrix::Zero();
+  std::optional<TwistEstimate> velocity;
 
   // The covariance was multiplied by this (see CovarianceInflation).
   double covariance_factor = 1.0;

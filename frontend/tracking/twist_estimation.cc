@@ -1,6 +1,7 @@
 #include "frontend/tracking/twist_estimation.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +24,14 @@ double Weight(double square, double sigma) {
 }
 
 }  // namespace
+
+TwistEstimate ExpectedTwist(const FrameTiming& timing,
+                            const VelocityPrior& prior) {
+  return {
+      timing.twist, IndependentErrors(prior.sigma_angular, prior.sigma_linear),
+      timing.color.offset * MotionMatrix::Identity(),
+      MotionCovarianceOfTwist(timing, prior.sigma_angular, prior.sigma_linear)};
+}
 
 TwistEstimate EstimateTwist(const Correspondences& matches,
                             const std::vector<bool>& is_inlier, double sigma,
@@ -85,27 +94,40 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   hessian = hessian.selfadjointView<Eigen::Lower>();  // exactly symmetric
   // The motion has no prior; this only keeps the system solvable.
   hessian.diagonal().head<6>().array() += 1e-3;
-  const Twist off = prior_mean - timing.twist;
-  const double angular = 1.0 / (prior.sigma_angular * prior.sigma_angular);
-  const double linear = 1.0 / (prior.sigma_linear * prior.sigma_linear);
-  hessian.diagonal().segment<3>(6).array() += angular;
-  hessian.diagonal().tail<3>().array() += linear;
-  right.segment<3>(6) += angular * off.angular;
-  right.tail<3>() += linear * off.linear;
-  const Vector12 change = hessian.ldlt().solve(right);
-  const Twist change_of_twist = {change.segment<3>(6), change.segment<3>(9)};
   // A change of the velocity changes the motion by -H_mm^-1 H_mv.
   const MotionMatrix H_mm = hessian.topLeftCorner<6, 6>();
   const MotionMatrix H_mv = hessian.topRightCorner<6, 6>();
   const MotionMatrix follows = H_mm.ldlt().solve(H_mv);
-  const MotionMatrix velocity_information =
+  const MotionMatrix by_rows =
       hessian.bottomRightCorner<6, 6>() - H_mv.transpose() * follows;
+  const MotionVector right_by_rows =
+      right.tail<6>() - follows.transpose() * right.head<6>();
+  const MotionVector prior_information =
+      IndependentErrors(1.0 / prior.sigma_angular, 1.0 / prior.sigma_linear)
+          .diagonal();
+  const Twist off = prior_mean - timing.twist;
+  MotionVector prior_change;
+  prior_change << off.angular, off.linear;
+  // The information S of the rows is about the velocity relative to that of the
+  // reference, whose covariance is P: (S^-1 + P)^-1 = (1 + S P)^-1 S.
+  const Eigen::PartialPivLU<MotionMatrix> with_reference(
+      MotionMatrix::Identity() + by_rows * prior.reference_covariance);
+  MotionMatrix information = with_reference.solve(by_rows);
+  information.diagonal() += prior_information;
+  const MotionMatrix covariance = information.inverse();
+  const MotionVector change =
+      covariance * (with_reference.solve(right_by_rows) +
+                    prior_information.cwiseProduct(prior_change));
+  // An error that the reference has as well does not affect the motion.
+  MotionMatrix relative_information = by_rows;
+  relative_information.diagonal() += prior_information;
   MotionMatrix to_center = MotionMatrix::Identity();
   to_center.bottomRightCorner<3, 3>() =
       -cur_from_ref.rotation.conjugate().toRotationMatrix();
   const MotionMatrix moves = to_center * follows;
-  return {timing.twist + change_of_twist,
-          moves * velocity_information.ldlt().solve(moves.transpose())};
+  return {timing.twist + Twist{change.head<3>(), change.tail<3>()}, covariance,
+          -follows,
+          moves * relative_information.ldlt().solve(moves.transpose())};
 }
 
 }  // namespace rgbd_pose

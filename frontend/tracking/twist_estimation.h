@@ -13,16 +13,31 @@ namespace rgbd_pose {
 struct TwistEstimate {
   Twist twist;
 
+  // Covariance of the twist (angular, then linear).
+  MotionMatrix covariance = MotionMatrix::Zero();
+
+  // Derivative of the motion by the twist with which the frame is corrected.
+  // The motion changes by a rotation vector, then a translation, both in
+  // current axes.
+  MotionMatrix motion_by_twist = MotionMatrix::Zero();
+
   // The part of the motion's covariance that is due to the uncertainty of the
   // velocity, defined as in MotionEstimate::covariance.
   MotionMatrix motion_covariance = MotionMatrix::Zero();
 };
 
+// What a prior alone says of a velocity: it is the mean `timing.twist`, and the
+// motion was determined when the middle row was exposed.
+TwistEstimate ExpectedTwist(const FrameTiming& timing,
+                            const VelocityPrior& prior);
+
 // Estimates a change of the motion and a change of the velocity together, by
 // linear least squares over the inliers of `matches`. Their observations of the
 // current frame are corrected with timing.twist; `sigma` is the spread of their
 // residuals, see MotionEstimate. If rows are exposed one after another, a
-// velocity shears and stretches the image, which no motion does. Only the
+// velocity shears and stretches the image, which no motion does. An error of
+// the reference's velocity shears its points alike, so rows tell no more than
+// the difference of both (see VelocityPrior::reference_covariance). Only the
 // change of the velocity is used: the motion has to be estimated again from
 // matches corrected with it.
 TwistEstimate EstimateTwist(const Correspondences& matches,

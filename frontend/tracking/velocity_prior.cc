@@ -23,6 +23,10 @@ constexpr double kLostSigmaLinear = 0.5;
 // the change of velocity from frame to frame.
 constexpr double kSigmaOfChange = 0.5;
 
+// Change of the acceleration of a hand per second, as a share of it. A rendered
+// hand has 1.3 (angular) and 1.9 (linear).
+constexpr double kChangeOfAcceleration = 1.7;  // 1/s
+
 // Weight of a new value in the mean squares, which span about ten frames.
 constexpr double kShareOfNew = 0.1;
 
@@ -97,6 +101,18 @@ VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
       middle_from_last_,
       sigma(std::sqrt(angular_square_), kMinChangeAngular, kLostSigmaAngular),
       sigma(std::sqrt(linear_square_), kMinChangeLinear, kLostSigmaLinear)};
+}
+
+MotionMatrix VelocityModel::CovarianceOfUnknown() {
+  return IndependentErrors(kLostSigmaAngular, kLostSigmaLinear);
+}
+
+MotionMatrix VelocityModel::CovarianceInTheMiddle(double interval) const {
+  const double scale = kChangeOfAcceleration * interval;
+  return IndependentErrors(
+      scale *
+          std::max(kMinChangeAngular, std::sqrt(angular_square_) * interval),
+      scale * std::max(kMinChangeLinear, std::sqrt(linear_square_) * interval));
 }
 
 void VelocityModel::Add(const Twist& twist, double timestamp, double middle) {

@@ -26,6 +26,10 @@ struct VelocityPrior {
   double sigma_angular = 0.0;  // rad/s
   double sigma_linear = 0.0;   // m/s
 
+  // Covariance of the velocity (angular, then linear) according to which the
+  // points of the reference have been moved.
+  MotionMatrix reference_covariance = MotionMatrix::Zero();
+
   // The mean velocity since the previous frame, and the velocity expected at
   // this frame. `twist`: the velocity with which the motion was found.
   std::optional<Twist> Between(const Rigid3d& cur_from_ref,
@@ -69,6 +73,14 @@ class VelocityModel {
   // the last frame; nothing: it was not found.
   VelocityPrior Prior(const std::optional<Rigid3d>& prev_from_ref,
                       double interval, double middle) const;
+
+  // Covariance of the velocity (angular, then linear) of a hand of which
+  // nothing is known.
+  static MotionMatrix CovarianceOfUnknown();
+
+  // Covariance of the velocity (angular, then linear) of the last frame if it
+  // is the mean of those before and after it, over about `interval` s each.
+  MotionMatrix CovarianceInTheMiddle(double interval) const;
 
   // Adds the velocity of the next frame, which was corrected with it.
   void Add(const Twist& twist, double timestamp, double middle);

@@ -88,7 +88,10 @@ TEST(ShutterTrackingTest, GoesOnFromANewReference) {
   const ShutterSequence sequence("pan_tilt", RollingShutters(1.0), 60);
   Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
   // A reference is not moved by less than 0.2 px, 0.024 rad/s of this camera.
-  constexpr double kMaxAngular = 0.027;  // rad/s
+  // The first two frames have the same rows and the same prior, so the velocity
+  // of each is less certain.
+  constexpr double kMaxAngular = 0.024 + 0.003;         // rad/s
+  constexpr double kMaxAngularOfFirst = 0.024 + 0.008;  // rad/s
   int new_references = 0;
   bool is_new = false;
   for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
@@ -110,7 +113,7 @@ TEST(ShutterTrackingTest, GoesOnFromANewReference) {
       const Twist around =
           TwistOf(sequence.Motion(before, i), (i - before) / 30.0);
       EXPECT_LT((keyframe.frame.twist->angular - around.angular).norm(),
-                kMaxAngular);
+                before == i - 1 ? kMaxAngularOfFirst : kMaxAngular);
     }
     is_new = tracked.is_reference;
   }

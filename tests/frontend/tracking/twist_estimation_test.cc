@@ -235,6 +235,53 @@ TEST(TwistEstimationTest, TheLessIsKnownTheWiderTheMotion) {
   }
 }
 
+// A reference whose velocity is wrong is sheared like a frame with the opposite
+// error.
+TEST(TwistEstimationTest, RowsTellNoMoreThanTheReferenceKnows) {
+  const RollingMatches seen(TimingOf(kTwist), kMotion, 1.0, 8);
+  const Correspondences matches = seen.MovedBy(Twist());
+  VelocityPrior prior = PriorWith(0.5, 0.5);
+  double last = 0.0;
+  for (const double sigma : {0.0, 0.1, 0.5, 1e3}) {
+    prior.reference_covariance = IndependentErrors(sigma, sigma);
+    const TwistEstimate found =
+        EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
+                      kMotion, TimingOf(Twist()), Twist(), prior);
+    const double error = TwistError(found.twist, kTwist);
+    EXPECT_GT(error, last) << sigma;
+    last = error;
+    // Between the certainty of the reference and that of the prior.
+    EXPECT_LT(found.covariance.diagonal().maxCoeff(), 0.2500001);
+    EXPECT_GT(found.covariance.diagonal().minCoeff(),
+              0.9 / (1.0 / (0.5 * 0.5) + 1.0 / (sigma * sigma)));
+  }
+  EXPECT_NEAR(last, TwistError(Twist(), kTwist), 1e-3);
+}
+
+TEST(TwistEstimationTest, TheMotionFollowsTheTwist) {
+  const RollingMatches seen(TimingOf(kTwist), kMotion, 1.0, 9);
+  Estimator estimator({}, MakeRobustCosts());
+  const MotionEstimate before =
+      estimator.Estimate(seen.MovedBy(kTwist), kMotion);
+  const TwistEstimate found = EstimateTwist(
+      seen.MovedBy(kTwist), before.is_inlier, before.sigma,
+      before.cur_from_prev, TimingOf(kTwist), kTwist, PriorWith(1.0, 1.0));
+  for (int i = 0; i < 6; ++i) {
+    MotionVector change = MotionVector::Zero();
+    change[i] = 0.05;
+    const Twist other = {kTwist.angular + change.head<3>(),
+                         kTwist.linear + change.tail<3>()};
+    const MotionEstimate after =
+        estimator.Estimate(seen.MovedBy(other), before.cur_from_prev);
+    const Rigid3d moved = after.cur_from_prev * before.cur_from_prev.Inverse();
+    MotionVector motion;
+    motion << RotationVector(moved.rotation), moved.translation;
+    const MotionVector expected = found.motion_by_twist * change;
+    // The solve weighs its residuals a little differently.
+    EXPECT_LT((motion - expected).norm(), 0.25 * expected.norm()) << i;
+  }
+}
+
 // As in the tracker: the velocity starts from the mean, the motion uses the
 // moved matches. The velocities' spread around the mean follows the prior.
 TEST(TwistEstimationTest, TheCovarianceIsHonest) {
