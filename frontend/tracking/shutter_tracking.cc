@@ -85,6 +85,7 @@ const PreparedFrame* ShutterTracking::Follow(
     if (!track_again(*found_.frame, prior, found)) return nullptr;
     look();
     if (!early_->velocity.has_value() && found_.velocity.has_value()) {
+      found_.velocity->covariance += reference->velocity_covariance;
       reference->timing_covariance =
           early_->timing_covariance + found_.velocity->motion_covariance;
     }
@@ -132,7 +133,10 @@ VelocityPrior ShutterTracking::PriorOf(
     const std::optional<Rigid3d>& prev_from_ref, double interval,
     double middle) const {
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  prior.reference_covariance = reference.velocity_covariance;
+  // Neither velocity of the first two frames is known. The second one is that
+  // which fits the first.
+  const bool is_second = early_.has_value() && !early_->velocity.has_value();
+  if (!is_second) prior.reference_covariance = reference.velocity_covariance;
   return prior;
 }
 
