@@ -46,9 +46,9 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                            odometry.last_estimate(), caption));
   const OdometryKeyframe* keyframe = odometry.FindKeyframe(tracked.reference);
   if (tracked.status != TrackingStatus::kLost && keyframe != nullptr &&
-      keyframe->reference->images() != nullptr) {
+      keyframe->reference->pixels != nullptr) {
     WritePngFile(folder / Format("%06d_residuals.png", tracked.index),
-                 DrawResiduals(*keyframe->reference->images(), frame,
+                 DrawResiduals(keyframe->reference->pixels->view, frame,
                                odometry.last_estimate().cur_from_prev));
   }
 }

@@ -17,6 +17,7 @@
 #include "frontend/places/place_database.h"
 #include "frontend/slam/keyframe_graph.h"
 #include "frontend/slam/keyframe_map.h"
+#include "frontend/tracking/reference.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {

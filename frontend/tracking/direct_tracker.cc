@@ -12,8 +12,6 @@
 namespace rgbd_pose {
 namespace {
 
-// Distance between the samples that determine the overlap.
-constexpr int kSampleStepPx = 20;
 // Level at which views are compared: noise and errors of 1 or 2 px are small.
 constexpr size_t kLikenessLevel = 3;
 // A reference needs at least this many samples (of 768).
@@ -39,30 +37,6 @@ double LargestSigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, EigenOf(covariance).eigenvalues()[2]));
 }
 
-// A reference that keeps the images of its frame for the direct costs.
-struct DirectReference final : Reference {
-  // `id`: unique for each reference.
-  DirectReference(const PreparedFrame& frame, const FrontendOptions& images,
-                  uint64_t id)
-      : depth(frame.depth),
-        pyramid(frame.Derived<SmoothPyramid>().levels),
-        view(ViewFrame(frame, pyramid, images.camera, images.depth.noise)),
-        samples(frame, images.camera, kSampleStepPx, images.depth.min_depth,
-                images.depth.max_depth) {
-    view.id = id;
-  }
-
-  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
-    return samples.SeenFrom(cur_from_ref);
-  }
-  const FrameView* images() const override { return &view; }
-
-  cv::Mat depth;
-  std::vector<cv::Mat> pyramid;
-  FrameView view;
-  ViewOverlap samples;  // pixels with depth on a grid over the image
-};
-
 }  // namespace
 
 DirectTracker::DirectTracker(const FrontendOptions& images,
@@ -80,9 +54,10 @@ void DirectTracker::Prepare(const PreparedFrame& frame) const {
 std::unique_ptr<Reference> DirectTracker::MakeReference(
     const PreparedFrame& frame, const Reference* /*last*/,
     const TrackingResult* /*tracked*/, std::string* why_not) {
-  auto reference =
-      std::make_unique<DirectReference>(frame, images_, ++last_id_);
-  if (reference->samples.size() < kMinSamples) {
+  auto reference = std::make_unique<Reference>();
+  reference->pixels =
+      std::make_unique<ReferencePixels>(frame, images_, ++last_id_);
+  if (reference->pixels->samples.size() < kMinSamples) {
     *why_not = "too few pixels with depth";
     return nullptr;
   }
@@ -92,7 +67,7 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
 void DirectTracker::MoveReference(const PreparedFrame& frame,
                                   const Rigid3d& reference_from_stamp,
                                   Reference* reference) const {
-  FrameView& view = dynamic_cast<DirectReference&>(*reference).view;
+  FrameView& view = reference->pixels->view;
   view.timing = frame.Timing();
   view.reference_from_stamp = reference_from_stamp;
   view.id = ++last_id_;  // costs select the points again
@@ -127,11 +102,11 @@ void DirectTracker::Track(const Reference& reference,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
   MotionEstimate* const estimate = &tracked->estimate;
-  Estimate(*reference.images(), frame,
+  Estimate(reference.pixels->view, frame,
            guess.search_at.value_or(guess.cur_from_ref),
            PriorOf(options_, guess), nullptr, &estimators_.leading, estimate);
   if (estimate->num_used > 0) {
-    Estimate(*reference.images(), frame, Rigid3d(estimate->cur_from_prev),
+    Estimate(reference.pixels->view, frame, Rigid3d(estimate->cur_from_prev),
              PriorOf(options_, guess), nullptr, &estimators_.refining,
              estimate);
   }
@@ -144,7 +119,7 @@ void DirectTracker::TrackAgain(const Reference& reference,
                                const TrackingGuess& guess,
                                TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
-  Estimate(*reference.images(), frame, guess.cur_from_ref,
+  Estimate(reference.pixels->view, frame, guess.cur_from_ref,
            PriorOf(options_, guess), nullptr, &estimators_.refining,
            &tracked->estimate);
   if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
@@ -156,7 +131,7 @@ void DirectTracker::RefineWithMatches(const Reference& reference,
                                       const TrackingResult& by_features,
                                       TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
-  Estimate(*reference.images(), frame, by_features.estimate.cur_from_prev,
+  Estimate(reference.pixels->view, frame, by_features.estimate.cur_from_prev,
            by_features.prior, &by_features, &estimators_.refining,
            &tracked->estimate);
   Judge(reference, frame, /*is_alone=*/false, tracked);
@@ -178,7 +153,7 @@ void DirectTracker::FindTwist(const Reference& reference,
       break;
     }
     seen.twist = twist;
-    Estimate(*reference.images(), seen, Rigid3d(estimate->cur_from_prev),
+    Estimate(reference.pixels->view, seen, Rigid3d(estimate->cur_from_prev),
              PriorOf(options_, guess), nullptr, &estimators_.refining,
              estimate);
   }
@@ -190,7 +165,7 @@ Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
                                  const TrackingGuess& guess) {
   if (!estimators_.coarse.has_value()) return guess.cur_from_ref;
-  Estimate(*reference.images(), frame, guess.cur_from_ref,
+  Estimate(reference.pixels->view, frame, guess.cur_from_ref,
            PriorOf(options_, guess), nullptr, &*estimators_.coarse, &start_);
   return HasMotion(start_) ? start_.cur_from_prev : guess.cur_from_ref;
 }
@@ -223,10 +198,10 @@ void DirectTracker::Estimate(const FrameView& prev, const PreparedFrame& frame,
 void DirectTracker::Judge(const Reference& reference,
                           const PreparedFrame& frame, bool is_alone,
                           TrackingResult* tracked) const {
-  const auto& ours = dynamic_cast<const DirectReference&>(reference);
+  const ReferencePixels& ours = *reference.pixels;
   const MotionEstimate& estimate = tracked->estimate;
   tracked->num_found = estimate.num_used;
-  tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
+  tracked->overlap = ours.samples.SeenFrom(estimate.cur_from_prev);
   double& share = tracked->overlap.share;
   if (estimate.num_used > 0) {
     share *= static_cast<double>(estimate.num_inliers) / estimate.num_used;

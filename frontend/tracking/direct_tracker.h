@@ -7,6 +7,7 @@
 
 #include "core/estimation/estimator.h"
 #include "frontend/features/frontend.h"
+#include "frontend/tracking/reference.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {

@@ -30,7 +30,7 @@ constexpr double kMinAgreeingViewOk = 0.45;
 // covers less of it, or it cannot be told from the scene.
 constexpr double kMinTrustedShare = 0.3;
 
-double ShareOf(const FeatureReference& reference,
+double ShareOf(const ReferenceFeatures& reference,
                const TrackingResult& tracked) {
   return static_cast<double>(tracked.estimate.num_inliers) /
          reference.validation.num_trusted();
@@ -49,22 +49,6 @@ double MeanInlierFlowPx(const TrackingResult& tracked) {
 }
 
 }  // namespace
-
-Overlap FeatureReference::SeenFrom(const Rigid3d& cur_from_ref) const {
-  Overlap overlap;
-  int seen = 0;
-  for (const Observation& o : features->observations) {
-    // Lens distortion does not matter here.
-    const auto pixel = SeenAt(camera, cur_from_ref, o);
-    if (!pixel.has_value() || !camera.Contains(*pixel)) continue;
-    ++seen;
-    overlap.flow_px += (*pixel - Eigen::Vector2d(o.u, o.v)).norm();
-  }
-  if (seen == 0) return overlap;
-  overlap.share = static_cast<double>(seen) / features->observations.size();
-  overlap.flow_px /= seen;
-  return overlap;
-}
 
 FeatureTracker::FeatureTracker(std::unique_ptr<Frontend> frontend,
                                Estimator estimator,
@@ -86,8 +70,8 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
   FeatureValidation validation(count);
   if (last != nullptr) {
     validation = FeatureValidation(
-        *dynamic_cast<const FeatureReference&>(*last).features, *tracked,
-        frontend_->is_exhaustive(), *features,
+        *last->features->features, *tracked, frontend_->is_exhaustive(),
+        *features,
         std::max<size_t>(2 * options_.min_inliers_ok,
                          kMinTrustedShare * static_cast<double>(count)));
   }
@@ -95,23 +79,24 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
     *why_not = "only " + std::to_string(count) + " features with depth";
     return nullptr;
   }
-  return std::make_unique<FeatureReference>(images().camera,
-                                            std::move(features), validation);
+  auto reference = std::make_unique<Reference>();
+  reference->features = std::make_unique<ReferenceFeatures>(
+      images().camera, std::move(features), std::move(validation));
+  return reference;
 }
 
 void FeatureTracker::MoveReference(const PreparedFrame& frame,
                                    const Rigid3d& reference_from_stamp,
                                    Reference* reference) const {
-  frontend_->ObserveAgain(
-      frame, reference_from_stamp,
-      dynamic_cast<FeatureReference&>(*reference).features.get());
+  frontend_->ObserveAgain(frame, reference_from_stamp,
+                          reference->features->features.get());
 }
 
 void FeatureTracker::Track(const Reference& reference,
                            const PreparedFrame& frame,
                            const TrackingGuess& guess,
                            TrackingResult* tracked) {
-  const auto& ours = dynamic_cast<const FeatureReference&>(reference);
+  const ReferenceFeatures& ours = *reference.features;
   tracked->Begin(TrackingSource::kFeatures);
   tracked->prior = PriorOf(options_, guess);
   const auto track = [&](const PreparedFrame& seen, const Rigid3d& search_at,
@@ -142,7 +127,7 @@ void FeatureTracker::TrackAgain(const Reference& reference,
                                 const PreparedFrame& frame,
                                 const TrackingGuess& guess,
                                 TrackingResult* tracked) {
-  const auto& ours = dynamic_cast<const FeatureReference&>(reference);
+  const ReferenceFeatures& ours = *reference.features;
   for (FeatureMatches* part : {&tracked->matches, &tracked->on_probation}) {
     const FeatureMatches before = *part;
     part->Clear();
@@ -158,7 +143,7 @@ void FeatureTracker::TrackAgain(const Reference& reference,
   Complete(ours, tracked);
 }
 
-void FeatureTracker::Complete(const FeatureReference& ours,
+void FeatureTracker::Complete(const ReferenceFeatures& ours,
                               TrackingResult* tracked) const {
   tracked->covariance_factor =
       CovarianceInflation(tracked->matches.matches, tracked->estimate);
@@ -255,7 +240,7 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
 }
 
 void FeatureTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
-  auto& ours = dynamic_cast<FeatureReference&>(*reference);
+  ReferenceFeatures& ours = *reference->features;
   ours.validation.Learn(tracked->on_probation, tracked->estimate.cur_from_prev);
   tracked->overlap.share = ShareOf(ours, *tracked);
 }

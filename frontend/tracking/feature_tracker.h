@@ -6,26 +6,10 @@
 
 #include "core/estimation/estimator.h"
 #include "frontend/features/frontend.h"
-#include "frontend/tracking/feature_validation.h"
+#include "frontend/tracking/reference.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
-
-// The features of a frame, and which of them may affect the motion.
-struct FeatureReference final : Reference {
-  // `validation` must be made for these features.
-  FeatureReference(const Camera& camera, std::unique_ptr<FeatureSet> features,
-                   FeatureValidation validation)
-      : camera(camera),
-        features(std::move(features)),
-        validation(std::move(validation)) {}
-
-  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
-
-  Camera camera;                         // of the frame
-  std::unique_ptr<FeatureSet> features;  // of the frame
-  FeatureValidation validation;          // of the features
-};
 
 // Finds the features of the reference in the frame (see Frontend) and estimates
 // the motion from the matches.
@@ -64,7 +48,7 @@ class FeatureTracker final : public Tracker {
   void FindTwist(const FeatureSet& features, const Frame& frame,
                  const VelocityPrior& velocity, TrackingResult* tracked);
   // Sets what follows from the estimate.
-  void Complete(const FeatureReference& reference,
+  void Complete(const ReferenceFeatures& reference,
                 TrackingResult* tracked) const;
   // Sets status and reason from the estimate.
   void Judge(TrackingResult* tracked) const;

@@ -28,18 +28,6 @@ PreparedFrame WithVelocity(const PreparedFrame& frame,
                                       : frame;
 }
 
-// One of the two may be null.
-struct HybridReference final : Reference {
-  std::unique_ptr<Reference> features, direct;
-
-  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
-    return (features != nullptr ? features : direct)->SeenFrom(cur_from_ref);
-  }
-  const FrameView* images() const override {
-    return direct != nullptr ? direct->images() : nullptr;
-  }
-};
-
 }  // namespace
 
 HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
@@ -54,40 +42,38 @@ HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
 std::unique_ptr<Reference> HybridTracker::MakeReference(
     const PreparedFrame& frame, const Reference* last,
     const TrackingResult* tracked, std::string* why_not) {
-  const auto* before = dynamic_cast<const HybridReference*>(last);
   // If pixels alone tracked the frame, its features were not checked.
-  const bool by_features = before != nullptr && before->features != nullptr &&
+  const bool by_features = last != nullptr && last->features != nullptr &&
                            tracked->source != TrackingSource::kDirect;
-  auto reference = std::make_unique<HybridReference>();
-  reference->direct = direct_->MakeReference(frame, nullptr, nullptr, why_not);
+  auto pixels = direct_->MakeReference(frame, nullptr, nullptr, why_not);
   // After the pixels, as the reason of the features counts.
-  reference->features = features_->MakeReference(
-      frame, by_features ? before->features.get() : nullptr,
-      by_features ? tracked : nullptr, why_not);
-  if (reference->features == nullptr &&
-      (!refines_ || reference->direct == nullptr)) {
+  auto reference =
+      features_->MakeReference(frame, by_features ? last : nullptr,
+                               by_features ? tracked : nullptr, why_not);
+  if (pixels == nullptr) return reference;
+  if (reference != nullptr) {
+    pixels->features = std::move(reference->features);
+  } else if (!refines_) {
     return nullptr;
   }
-  return reference;
+  return pixels;
 }
 
 void HybridTracker::MoveReference(const PreparedFrame& frame,
                                   const Rigid3d& reference_from_stamp,
                                   Reference* reference) const {
-  auto& ours = dynamic_cast<HybridReference&>(*reference);
-  if (ours.features != nullptr) {
-    features_->MoveReference(frame, reference_from_stamp, ours.features.get());
+  if (reference->features != nullptr) {
+    features_->MoveReference(frame, reference_from_stamp, reference);
   }
-  if (ours.direct != nullptr) {
-    direct_->MoveReference(frame, reference_from_stamp, ours.direct.get());
+  if (reference->pixels != nullptr) {
+    direct_->MoveReference(frame, reference_from_stamp, reference);
   }
 }
 
 void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {
-  const auto& ours = dynamic_cast<const HybridReference&>(reference);
-  if (ours.features == nullptr) {
+  if (reference.features == nullptr) {
     tracked->Begin(TrackingSource::kFeatures);
     tracked->estimate = MotionEstimate();
     tracked->status = TrackingStatus::kLost;
@@ -95,11 +81,11 @@ void HybridTracker::Track(const Reference& reference,
   } else {
     double start_ms = 0.0;
     TrackingGuess aligned = guess;
-    if (ours.direct != nullptr && !guess.search_at.has_value()) {
+    if (reference.pixels != nullptr && !guess.search_at.has_value()) {
       const StageTimer timer(&start_ms);
-      aligned.search_at = direct_->FindStart(*ours.direct, frame, guess);
+      aligned.search_at = direct_->FindStart(reference, frame, guess);
     }
-    features_->Track(*ours.features, frame, aligned, tracked);
+    features_->Track(reference, frame, aligned, tracked);
     tracked->match_ms += start_ms;
   }
   AddPixels(reference, frame, guess, tracked);
@@ -109,13 +95,12 @@ void HybridTracker::TrackAgain(const Reference& reference,
                                const PreparedFrame& frame,
                                const TrackingGuess& guess,
                                TrackingResult* tracked) {
-  const auto& ours = dynamic_cast<const HybridReference&>(reference);
   if (tracked->source == TrackingSource::kDirect) {
-    direct_->TrackAgain(*ours.direct, frame, guess, tracked);
+    direct_->TrackAgain(reference, frame, guess, tracked);
     return;
   }
   tracked->source = TrackingSource::kFeatures;
-  features_->TrackAgain(*ours.features, frame, guess, tracked);
+  features_->TrackAgain(reference, frame, guess, tracked);
   AddPixels(reference, frame, guess, tracked);
 }
 
@@ -123,18 +108,17 @@ void HybridTracker::AddPixels(const Reference& reference,
                               const PreparedFrame& frame,
                               const TrackingGuess& guess,
                               TrackingResult* tracked) {
-  const auto& ours = dynamic_cast<const HybridReference&>(reference);
-  if (!refines_ || ours.direct == nullptr) return;
+  if (!refines_ || reference.pixels == nullptr) return;
   const bool is_clear =
       tracked->status == TrackingStatus::kOk || tracked->is_ambiguous;
   // Pixels alone take twice as long as features from the next guess.
-  if (guess.is_tentative && ours.features != nullptr && !is_clear) {
+  if (guess.is_tentative && reference.features != nullptr && !is_clear) {
     tracked->is_partial = true;
     return;
   }
   if (tracked->status == TrackingStatus::kLost) {
     // A motion from few features may be wrong: use pixels alone.
-    direct_->Track(*ours.direct, frame, guess, &pixels_);
+    direct_->Track(reference, frame, guess, &pixels_);
     pixels_.match_ms += tracked->match_ms;
     if (pixels_.status == TrackingStatus::kLost) {
       tracked->reason += "; pixels alone: " + pixels_.reason;
@@ -154,18 +138,16 @@ void HybridTracker::Refine(const Reference& reference,
                            TrackingResult* tracked) {
   if (!tracked->needs_refinement) return;
   tracked->needs_refinement = false;
-  const Reference& direct =
-      *dynamic_cast<const HybridReference&>(reference).direct;
-  const bool is_refined = RefineByPixels(direct, frame, tracked);
+  const bool is_refined = RefineByPixels(reference, frame, tracked);
   if (tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
-    Confirm(direct, frame, guess, is_refined, tracked);
+    Confirm(reference, frame, guess, is_refined, tracked);
   }
 }
 
-bool HybridTracker::RefineByPixels(const Reference& direct,
+bool HybridTracker::RefineByPixels(const Reference& reference,
                                    const PreparedFrame& frame,
                                    TrackingResult* tracked) {
-  direct_->RefineWithMatches(direct, WithVelocity(frame, *tracked), *tracked,
+  direct_->RefineWithMatches(reference, WithVelocity(frame, *tracked), *tracked,
                              &pixels_);
   if (tracked->velocity.has_value()) {
     pixels_.estimate.covariance += tracked->velocity->motion_covariance;
@@ -188,10 +170,11 @@ bool HybridTracker::RefineByPixels(const Reference& direct,
   return true;
 }
 
-void HybridTracker::Confirm(const Reference& direct, const PreparedFrame& frame,
+void HybridTracker::Confirm(const Reference& reference,
+                            const PreparedFrame& frame,
                             const TrackingGuess& guess, bool is_refined,
                             TrackingResult* tracked) {
-  direct_->Track(direct, WithVelocity(frame, *tracked), guess, &alone_);
+  direct_->Track(reference, WithVelocity(frame, *tracked), guess, &alone_);
   if (alone_.status != TrackingStatus::kOk) return;
   if (Agree(*tracked, alone_.estimate)) {
     tracked->status = TrackingStatus::kOk;
@@ -209,12 +192,12 @@ void HybridTracker::Confirm(const Reference& direct, const PreparedFrame& frame,
 }
 
 void HybridTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
-  auto& ours = dynamic_cast<HybridReference&>(*reference);
-  if (ours.features == nullptr || tracked->source == TrackingSource::kDirect) {
+  if (reference->features == nullptr ||
+      tracked->source == TrackingSource::kDirect) {
     return;
   }
   const Overlap overlap = tracked->overlap;
-  features_->OnAccepted(ours.features.get(), tracked);
+  features_->OnAccepted(reference, tracked);
   // Keep the overlap of the pixels (see Track) if it is larger.
   if (overlap.share > tracked->overlap.share) tracked->overlap = overlap;
 }

@@ -46,18 +46,17 @@ class HybridTracker final : public Tracker {
 
  private:
   // Lets pixels refine or replace the motion of the features in `tracked`.
-  void AddPixels(const Reference& features_and_direct,
-                 const PreparedFrame& frame, const TrackingGuess& guess,
-                 TrackingResult* tracked);
+  void AddPixels(const Reference& reference, const PreparedFrame& frame,
+                 const TrackingGuess& guess, TrackingResult* tracked);
   // Refines the motion of the features by pixels. Returns false, and changes
   // only time and iterations, if pixels contradict it or determine none.
-  bool RefineByPixels(const Reference& direct, const PreparedFrame& frame,
+  bool RefineByPixels(const Reference& reference, const PreparedFrame& frame,
                       TrackingResult* tracked);
   // Compares a motion from few features with that of pixels alone: ok if they
   // agree. The motion of pixels is taken if they disagree or the other one is
   // not refined. Changes nothing if pixels alone are not ok. `is_refined`:
   // result of RefineByPixels.
-  void Confirm(const Reference& direct, const PreparedFrame& frame,
+  void Confirm(const Reference& reference, const PreparedFrame& frame,
                const TrackingGuess& guess, bool is_refined,
                TrackingResult* tracked);
 

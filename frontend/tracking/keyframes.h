@@ -5,7 +5,7 @@
 
 #include "core/geometry/rigid3.h"
 #include "frontend/places/keyframe.h"
-#include "frontend/tracking/tracker.h"
+#include "frontend/tracking/reference.h"
 
 namespace rgbd_pose {
 

@@ -17,6 +17,8 @@
 
 namespace rgbd_pose {
 
+struct Reference;
+
 // Whether there is a motion to judge. kNotConverged is accepted: its last step
 // is some hundredths of a pixel.
 inline bool HasMotion(const MotionEstimate& estimate) {
@@ -53,19 +55,6 @@ struct TrackerOptions {
 
   // Returns one line that says what is wrong with the options, or empty.
   std::string Check() const;
-};
-
-// What a tracker keeps of a frame that others are tracked against, and what it
-// has learnt about this frame since. Shares the images of the frame.
-class Reference {
- public:
-  virtual ~Reference() = default;
-
-  // How much of the reference a camera should see after this motion.
-  virtual Overlap SeenFrom(const Rigid3d& cur_from_ref) const = 0;
-
-  // The images of the reference if they are kept, else null.
-  virtual const FrameView* images() const { return nullptr; }
 };
 
 // Where to search for a frame.

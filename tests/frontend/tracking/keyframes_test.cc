@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -10,13 +9,21 @@
 namespace rgbd_pose {
 namespace {
 
-// A wall at 2 m; a camera moving along x loses half a view per metre.
-struct WallReference final : Reference {
-  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
-    const double moved = std::abs(cur_from_ref.translation.x());
-    return {1.0 - 0.5 * moved, 262.5 * moved};
+// 15 x 11 features on a wall at 2 m.
+std::unique_ptr<Reference> MakeWall() {
+  auto features = std::make_unique<FeatureSet>();
+  for (int v = 40; v < 480; v += 40) {
+    for (int u = 40; u < 640; u += 40) {
+      features->observations.push_back({1.0 * u, 1.0 * v, 2.0, 0.5, 0.01});
+    }
   }
-};
+  const FeatureValidation validation(features->observations.size());
+  auto reference = std::make_unique<Reference>();
+  reference->features = std::make_unique<ReferenceFeatures>(
+      Camera{640, 480, 525, 525, 319.5, 239.5}, std::move(features),
+      validation);
+  return reference;
+}
 
 constexpr double kMinShare = 0.7;
 constexpr double kMaxFlowPx = 30.0;
@@ -27,7 +34,7 @@ Rigid3d CameraAt(double x) {
 }
 
 OdometryKeyframe MakeKeyframe(int id, int segment, double x) {
-  return {{id, segment, CameraAt(x)}, std::make_unique<WallReference>()};
+  return {{id, segment, CameraAt(x)}, MakeWall()};
 }
 
 TEST(KeyframesTest, FindsByIdAndForgetsTheOldest) {
@@ -76,7 +83,8 @@ TEST(KeyframesTest, TheNearestIsTheOneWithTheSmallestFlow) {
 
 TEST(KeyframesTest, EnoughOfTheViewHasToBeShared) {
   Keyframes keyframes;
-  keyframes.Add(MakeKeyframe(0, 0, 0.8));
+  // At 262.5 px per metre, 9 of the 15 columns are left.
+  keyframes.Add(MakeKeyframe(0, 0, 1.0));
   constexpr double kAnyFlow = 1e9;
   EXPECT_NE(keyframes.FindNearest(CameraAt(0.0), 0, 0.55, kAnyFlow, nullptr),
             nullptr);

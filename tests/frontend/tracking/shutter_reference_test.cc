@@ -20,12 +20,6 @@ constexpr double kTolerance = 0.03;       // relative: three rounds
 // How a velocity moves the motion of these frames: as the middle row is seen.
 const MotionMatrix kMotionByTwist = kMiddle * MotionMatrix::Identity();
 
-struct EmptyReference final : Reference {
-  Overlap SeenFrom(const Rigid3d& /*cur_from_ref*/) const override {
-    return {};
-  }
-};
-
 struct Move {
   Twist twist;
   Rigid3d reference_from_stamp;
@@ -42,7 +36,7 @@ class MovingTracker final : public Tracker {
                                            const Reference* /*last*/,
                                            const TrackingResult* /*tracked*/,
                                            std::string* /*why_not*/) override {
-    return std::make_unique<EmptyReference>();
+    return std::make_unique<Reference>();
   }
   void MoveReference(const PreparedFrame& frame,
                      const Rigid3d& reference_from_stamp,
@@ -81,7 +75,7 @@ class ShutterReferenceTest : public ::testing::Test {
   void Follow(const std::optional<Twist>& first, const Twist& twist,
               const std::optional<Twist>& guess = std::nullopt) {
     reference_.frame = FrameAt(0.0, first);
-    reference_.reference = std::make_unique<EmptyReference>();
+    reference_.reference = std::make_unique<Reference>();
     ShutterTracking shutter(&tracker_);
     TrackingResult tracked(tracker_.images().camera);
     if (first.has_value()) {

@@ -22,7 +22,7 @@ namespace {
 const Camera kCamera = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
 
 // 15 x 11 features on a wall at 2 m.
-FeatureReference FeatureWall() {
+ReferenceFeatures FeatureWall() {
   auto features = std::make_unique<FeatureSet>();
   for (int v = 40; v < 480; v += 40) {
     for (int u = 40; u < 640; u += 40) {
@@ -30,11 +30,11 @@ FeatureReference FeatureWall() {
     }
   }
   const FeatureValidation validation(features->observations.size());
-  return FeatureReference(kCamera, std::move(features), validation);
+  return ReferenceFeatures(kCamera, std::move(features), validation);
 }
 
-TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
-  const FeatureReference wall = FeatureWall();
+TEST(ReferenceFeaturesTest, SaysWhatAnotherCameraSeesOfIt) {
+  const ReferenceFeatures wall = FeatureWall();
   // 525 px / 2 m: a metre is 262.5 px, and 9 of the 15 columns are left.
   const Overlap aside =
       wall.SeenFrom(Rigid3d(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}));

@@ -13,12 +13,6 @@ namespace {
 
 using Status = TrackingStatus;
 
-struct EmptyReference final : Reference {
-  Overlap SeenFrom(const Rigid3d& /*cur_from_ref*/) const override {
-    return {};
-  }
-};
-
 // The status that a guess leads to without and with the slow methods.
 struct Outcome {
   Status quick, full;
@@ -45,7 +39,7 @@ class ScriptedTracker final : public Tracker {
                                            const Reference* /*last*/,
                                            const TrackingResult* /*tracked*/,
                                            std::string* /*why_not*/) override {
-    return std::make_unique<EmptyReference>();
+    return std::make_unique<Reference>();
   }
   void MoveReference(const PreparedFrame& /*frame*/,
                      const Rigid3d& /*reference_from_stamp*/,
@@ -105,7 +99,7 @@ Attempt TryInTurn(Outcome first, Outcome second, Outcome third = kNone) {
   ScriptedTracker tracker(first, second, third);
   TrackingAttempts attempts(&tracker);
   OdometryKeyframe keyframe;
-  keyframe.reference = std::make_unique<EmptyReference>();
+  keyframe.reference = std::make_unique<Reference>();
   TrackedFrame result;
   Attempt attempt;
   if (attempts.TryInTurn(
@@ -181,7 +175,7 @@ TEST(TrackingAttemptsTest, ACorrectionReplacesThePoseAndAddsItsTime) {
   ScriptedTracker tracker(kGood, kNone, kNone);
   TrackingAttempts attempts(&tracker);
   OdometryKeyframe keyframe;
-  keyframe.reference = std::make_unique<EmptyReference>();
+  keyframe.reference = std::make_unique<Reference>();
   TrackedFrame result;
   const PreparedFrame frame{Frame()};
   ASSERT_TRUE(attempts.Try(frame, keyframe, At(kFirst), &result));
