@@ -147,6 +147,10 @@ std::string PathFrom(const py::object& path) {
   return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
 }
 
+py::str PathTo(const std::string& path) {
+  return py::module_::import("os").attr("fsdecode")(py::bytes(path));
+}
+
 void WarnUser(const std::string& remark) {
   if (remark.empty()) return;
   if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 1) != 0) {

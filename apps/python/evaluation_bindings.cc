@@ -10,6 +10,7 @@
 #include "apps/python/released_gil.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
+#include "core/util/format.h"
 #include "core/util/text_file.h"
 
 namespace py = pybind11;
@@ -82,6 +83,11 @@ RpeResult EvaluateRpe(const py::object& estimated, const py::object& reference,
   return result;
 }
 
+std::string ErrorsInWords(const char* name, const Errors& errors) {
+  return Format("%s(rmse=%.6g, max=%.6g, count=%d)", name, errors.rmse,
+                errors.max, static_cast<int>(errors.count));
+}
+
 void BindErrors(py::module_* module) {
   py::class_<Errors> errors(*module, "Errors",
                             "Errors (m or rad): statistics, which are 0 if "
@@ -95,10 +101,8 @@ void BindErrors(py::module_* module) {
   property("max", &Errors::max, "maximum");
   property("values", &ViewOf<Errors, &Errors::values>,
            "(count,), in the order of time");
-  errors.def("__repr__", [](const Errors& self) {
-    return "Errors(rmse=" + std::to_string(self.rmse) +
-           ", count=" + std::to_string(self.count) + ")";
-  });
+  errors.def("__repr__",
+             [](const Errors& self) { return ErrorsInWords("Errors", self); });
   errors.def(Pickled<Errors>());
 }
 
@@ -112,6 +116,9 @@ void BindAteResult(py::module_* module) {
            "(count,), of the estimated poses, s");
   property("reference_from_estimated", &AteResult::reference_from_estimated,
            "(4, 4), the rigid alignment");
+  result.def("__repr__", [](const AteResult& self) {
+    return ErrorsInWords("AteResult", self);
+  });
   result.def(Pickled<AteResult>());
 }
 
@@ -124,6 +131,11 @@ void BindRpeResult(py::module_* module) {
   property("rotation", &RpeResult::rotation, "Errors, rad");
   property("timestamps", &ViewOf<RpeResult, &RpeResult::timestamps>,
            "(count,), of the first pose of each interval, s");
+  result.def("__repr__", [](const RpeResult& self) {
+    return "RpeResult(translation=" +
+           ErrorsInWords("Errors", self.translation) +
+           ", rotation=" + ErrorsInWords("Errors", self.rotation) + ")";
+  });
   result.def(Pickled<RpeResult>());
 }
 

@@ -55,6 +55,14 @@ cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
 
 }  // namespace
 
+std::string FrameInWords(const TrackedFrame& frame) {
+  std::string text =
+      std::to_string(frame.index) + ": " + ToString(frame.status);
+  if (!frame.reason.empty()) text += ", " + frame.reason;
+  return text + ", " + std::to_string(frame.inliers) + " of " +
+         std::to_string(frame.matches) + " matches agree";
+}
+
 void WarnInPython(const std::string& text) {
   if (text.empty()) return;
   if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), /*stack_level=*/1) != 0) {

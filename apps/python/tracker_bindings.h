@@ -25,6 +25,9 @@
 
 namespace rgbd_pose {
 
+// What a tracked frame shows of itself: number, status, reason, matches.
+std::string FrameInWords(const TrackedFrame& frame);
+
 // Warns in Python (UserWarning) unless the text is empty.
 void WarnInPython(const std::string& text);
 

@@ -162,3 +162,19 @@ def test_bad_trajectories_are_told_in_one_line(estimated, words):
         with pytest.raises(rgbd_pose.InputError, match=words) as error:
             evaluate(estimated, GOOD)
         assert "\n" not in str(error.value)
+
+
+def test_errors_say_how_large_they_are(files):
+    ate, rpe = rgbd_pose.evaluate_ate(*files), rgbd_pose.evaluate_rpe(*files)
+
+    def words(name, errors):
+        return (
+            f"{name}(rmse={errors.rmse:.6g}, max={errors.max:.6g}, "
+            f"count={errors.count})"
+        )
+
+    assert repr(ate) == words("AteResult", ate)
+    assert repr(rpe) == (
+        f"RpeResult(translation={words('Errors', rpe.translation)}, "
+        f"rotation={words('Errors', rpe.rotation)})"
+    )

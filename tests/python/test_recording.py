@@ -99,8 +99,9 @@ def test_has_a_length_and_frames_by_number(sequence, whole):
     for i, frame in ((1, whole[4]), (-1, whole[6]), (0, whole[2])):
         np.testing.assert_array_equal(recording[i].gray, frame.gray)
         assert recording[i].timestamp == frame.timestamp
-    with pytest.raises(IndexError, match="there are 3 frames"):
-        recording[3]
+    for index in (3, -4):
+        with pytest.raises(IndexError, match=f"{index}: there are 3 frames"):
+            recording[index]
     # A loop is not disturbed.
     loop = iter(recording)
     assert next(loop).index == 0 and recording[2].index == 2
@@ -111,6 +112,14 @@ def test_frames_say_what_they_are(whole):
     frame = whole[3]
     height, width = frame.gray.shape
     assert repr(frame) == f"Frame(3 at {frame.timestamp:.6f} s, {width} x {height})"
+
+
+def test_says_what_it_is(sequence, camera):
+    size = f"{camera.width} x {camera.height}"
+    recording = rgbd_pose.Recording(sequence, frames="2-6:2")
+    assert repr(recording) == f"Recording({str(sequence)!r}, 3 frames, {size})"
+    dataset = rgbd_pose.TumDataset(sequence, camera)
+    assert repr(dataset) == "TumDataset(8 frames)"
 
 
 def test_brings_its_inertial_samples(sequence, tmp_path):
