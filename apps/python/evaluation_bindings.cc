@@ -8,6 +8,7 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
+#include "core/evaluation/alignment.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/format.h"
@@ -60,6 +61,7 @@ AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
   const double delta_seconds = 2.0 * max_time_difference + 1.0;
   const EvaluationReport report = EvaluateObjects(
       estimated, reference, {max_time_difference, delta_seconds});
+  WarnUser(Sim3Warning(report.sim3, report.ate.rmse));
   AteResult result{{report.ate, {}}, {}, report.truth_from_estimate};
   for (const PoseError& pose : report.poses) {
     result.timestamps.push_back(pose.timestamp);
@@ -154,6 +156,7 @@ estimated, reference: path of a TUM text file, or a pair of time stamps (N,) (s,
     (N, 4, 4).
 max_time_difference: maximum time difference of paired poses (s).
 
+Warns of a size or shape that suggests a wrong depth scale, focal length or file.
 Raises InputError if no poses can be paired.)",
               py::arg("estimated"), py::arg("reference"),
               py::arg("max_time_difference") = difference);

@@ -91,13 +91,17 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
   options.depth_scale = depth_scale;
   options.topics = topics;
   if (!imu.is_none()) options.imu = PathFrom(imu);
-  return Recording(
+  Recording recording(
       options.path,
       [options, source, range = ParseFrameRange(frames)](bool keep_color) {
         SourceOptions with_color = options;
         with_color.keep_color = keep_color;
         return PartOf(OpenSource(source, with_color), range);
       });
+  for (const std::string& remark : recording.source().remarks()) {
+    WarnUser(remark);
+  }
+  return recording;
 }
 
 std::string RecordingInWords(const Recording& recording) {
@@ -222,7 +226,8 @@ imu: file that says mounting, delay or noise of the inertial sensor (Kalibr's);
     None: what the camera file and the recording say; "none": its samples are
     not read.
 
-Raises InputError for unreadable input.)");
+Warns of what was chosen or left out on opening, such as a frame rate that the
+recording does not specify. Raises InputError for unreadable input.)");
   recording.def(py::init(&OpenRecording),
                 "Raises InputError for unreadable input.", py::arg("path"),
                 py::arg("camera") = py::none(), py::kw_only(),

@@ -63,13 +63,6 @@ std::string FrameInWords(const TrackedFrame& frame) {
          std::to_string(frame.matches) + " matches agree";
 }
 
-void WarnInPython(const std::string& text) {
-  if (text.empty()) return;
-  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), /*stack_level=*/1) != 0) {
-    throw py::error_already_set();  // the user wants errors
-  }
-}
-
 Frame FrameFromArrays(const py::object& image, const py::object& depth,
                       const RgbdCamera& camera) {
   Frame frame;
@@ -107,7 +100,7 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
     }
   }
   if (too_far > used) {
-    WarnInPython(
+    WarnUser(
         "depth: most values are above 13 m and are not used; check the depth "
         "scale: float32 is in metres, millimetres are uint16 with a camera of "
         "depth_scale=1000");

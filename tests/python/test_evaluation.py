@@ -1,6 +1,7 @@
 """Compares the evaluation with the program rgbd_evaluate."""
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -178,3 +179,15 @@ def test_errors_say_how_large_they_are(files):
         f"RpeResult(translation={words('Errors', rpe.translation)}, "
         f"rotation={words('Errors', rpe.rotation)})"
     )
+
+
+def test_a_path_of_another_size_is_said(files):
+    stamps, poses = rgbd_pose.read_trajectory(files[0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rgbd_pose.evaluate_ate((stamps, poses), files[1])
+    small = poses.copy()
+    small[:, :3, 3] /= 5  # millimetres taken for units of 0.2 mm
+    with pytest.warns(UserWarning, match="scaled by 5.*the depth scale") as said:
+        rgbd_pose.evaluate_ate((stamps, small), files[1])
+    assert len(said) == 1 and said[0].filename == __file__
