@@ -33,7 +33,7 @@ def configure(folder):
         ["cmake", "-S", str(SOURCES), "-B", folder]
         + ["-DCMAKE_BUILD_TYPE=Release", "-DRGBD_POSE_BUILD_TESTS=OFF"]
         + ["-DRGBD_POSE_BUILD_BENCHMARKS=OFF"]
-        + ["-DRGBD_POSE_BUILD_PYTHON=ON"]
+        + ["-DRGBD_POSE_BUILD_PYTHON=ON", "-DRGBD_POSE_WHEEL=ON"]
         + [f"-DPython_EXECUTABLE={sys.executable}"],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -47,12 +47,26 @@ def configure(folder):
     sys.exit("\n".join(lines) or run.stdout)
 
 
-def build_package(prefix):
-    """Builds the module; returns the folder of the package below prefix."""
+def numpy_needed(folder):
+    """The requirement of the wheel: NumPy 2 needs a module by pybind11 2.12."""
+    cache = pathlib.Path(folder, "CMakeCache.txt").read_text(encoding="utf-8")
+    where = re.search(r"^pybind11_DIR:\w+=(.*)", cache, re.M)[1]
+    text = pathlib.Path(where, "pybind11ConfigVersion.cmake").read_text("utf-8")
+    found = re.search(r'PACKAGE_VERSION "(\d+)\.(\d+)', text).groups()
+    return "numpy" if tuple(map(int, found)) >= (2, 12) else "numpy<2"
+
+
+def build_folder():
+    """The configured build folder."""
     folder = os.environ.get("RGBD_POSE_BUILD_DIR")
     if not folder:
         folder = str(SOURCES / "build-python")
         configure(folder)
+    return folder
+
+
+def build_package(folder, prefix):
+    """Builds the module; returns the folder of the package below prefix."""
     jobs = str(os.cpu_count() or 1)
     subprocess.run(
         ["cmake", "--build", folder, "--target", "_rgbd_pose", "-j", jobs],
@@ -71,15 +85,16 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
     tag = f"{python}-{python}-{platform}"
     info = f"rgbd_pose-{version()}.dist-info"
+    folder = build_folder()
     with tempfile.TemporaryDirectory() as prefix:
         files = {
             f"rgbd_pose/{path.name}": path.read_bytes()
-            for path in sorted(build_package(prefix).iterdir())
+            for path in sorted(build_package(folder, prefix).iterdir())
             if path.is_file()
         }
     files[f"{info}/METADATA"] = (
         f"Metadata-Version: 2.1\nName: rgbd_pose\nVersion: {version()}\n"
-        "Requires-Python: >=3.8\nRequires-Dist: numpy\n"
+        f"Requires-Python: >=3.8\nRequires-Dist: {numpy_needed(folder)}\n"
     ).encode()
     files[f"{info}/WHEEL"] = (
         "Wheel-Version: 1.0\nGenerator: rgbd_pose\n"

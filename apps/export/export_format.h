@@ -17,8 +17,11 @@
 
 namespace rgbd_pose {
 
-// A finished run of rgbd_odometry or rgbd_slam, read from its folder.
+// A finished run of rgbd_odometry or rgbd_slam, read from its folder, or a path
+// that was tracked without them.
 struct FinishedRun {
+  using Open = std::function<std::unique_ptr<FrameSource>()>;
+
   // Reads the poses and settings. `dataset` and `camera`, unless empty,
   // override those of the run, because the recording may have moved. Throws
   // InputError for a folder without a run or with broken files.
@@ -26,12 +29,18 @@ struct FinishedRun {
                        const std::string& dataset = "",
                        const std::string& camera = "");
 
-  std::string folder;         // of its results
+  // A path in one world, without a folder. `open` opens its recording with
+  // colour. Throws InputError for a path without poses.
+  FinishedRun(Trajectory path, Open open);
+
+  std::string folder;         // of its results; empty: none
+  Open open;                  // only without a folder
   SequenceSettings sequence;  // with which the recording was opened
   OdometrySettings odometry;  // with which it was tracked
 
   // The poses of all frames that have one. Of each: the number of its frame (a
-  // row of frames.csv) and its segment. Segments have unrelated worlds.
+  // row of frames.csv; without a folder that of the pose) and its segment.
+  // Segments have unrelated worlds.
   Trajectory trajectory;
   std::vector<int> frames;
   std::vector<int> segments;
@@ -52,6 +61,10 @@ struct ExportOptions {
   double max_depth = 0.0;   // for these, m; 0: that of the run (meshes: 4 m)
   int max_points = 200000;  // of clouds exported with images
   int threads = 1;          // that read images in advance
+
+  // Called after each frame that was read, in place of a progress bar. It may
+  // throw, which ends the export.
+  std::function<void()> on_frame;
 };
 
 // The upper left pixel's centre for COLMAP and nerfstudio; here it is at 0.

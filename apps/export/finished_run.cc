@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <numeric>
 
 #include "apps/export/export_format.h"
 #include "apps/report/report_data.h"
@@ -112,7 +113,17 @@ FinishedRun::FinishedRun(const std::string& run_folder,
   }
 }
 
+FinishedRun::FinishedRun(Trajectory path, Open open)
+    : open(std::move(open)),
+      trajectory(std::move(path)),
+      frames(trajectory.size()),
+      segments(trajectory.size(), 0) {
+  if (trajectory.empty()) throw InputError("the path has no poses");
+  std::iota(frames.begin(), frames.end(), 0);
+}
+
 std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run) {
+  if (run.open != nullptr) return run.open();
   SequenceSettings settings = run.sequence;
   if (!fs::exists(settings.dataset)) {
     throw InputError("the recording of the run, " + settings.dataset +
@@ -139,12 +150,17 @@ std::vector<int> ReadViews(const FinishedRun& run, const ExportOptions& options,
     }
   }
   PickedFrames picked(source, times);
-  ProgressBar bar("reading", static_cast<int>(views.size()));
+  std::optional<ProgressBar> bar;
+  if (options.on_frame == nullptr) {
+    bar.emplace("reading", static_cast<int>(views.size()));
+  }
   FrameStream stream(&picked, nullptr, options.threads);
   int done = 0;
   for (const int view : views) {
     on_view(stream.Next()->frame, view);
-    bar.Update(++done);
+    ++done;
+    if (bar.has_value()) bar->Update(done);
+    if (options.on_frame != nullptr) options.on_frame();
   }
   return views;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/export/export_format.h"
+#include "apps/report/report_data.h"
 #include "apps/report/report_page.h"
 #include "apps/results/cloud_preview.h"
 #include "core/util/format.h"
@@ -28,10 +29,12 @@ TriangleMesh ThinMesh(const TriangleMesh& mesh, double voxel) {
 }
 
 // Adds a cloud or mesh to the page of the run, if there is one that can be
-// written. `all`: the number of points or triangles before thinning.
+// written; without a folder there is none. `all`: the number of points or
+// triangles before thinning.
 void ShowInPage(const std::string& folder, const char* file,
                 nlohmann::json preview, size_t all, size_t frames,
                 const ExportOptions& options) {
+  if (folder.empty()) return;
   preview["file"] = options.output;
   preview["all"] = all;
   preview["frames"] = frames;
@@ -41,7 +44,8 @@ void ShowInPage(const std::string& folder, const char* file,
         path / file,
         preview.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     if (HasReportLibrary() && std::filesystem::exists(path / "report.html")) {
-      WriteReport("run", folder);
+      WriteFileAtomically(path / "report.html",
+                          ReportPage("run", RunReportData(folder)));
     }
   } catch (const InputError& error) {
     LOG(WARNING) << "the page of the run does not show " << options.output

@@ -237,6 +237,7 @@ Json PointCloud(const std::vector<ColoredPoint>& points) {
 
 // The poses of the path that are keyframes of the run's map, if it has one.
 Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
+  if (run.folder.empty()) return {};
   const std::filesystem::path file =
       std::filesystem::path(run.folder) / "keyframes.csv";
   if (!std::filesystem::exists(file)) return {};
@@ -258,8 +259,8 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
   }
   if (path[0].timestamp < 0.0 ||
       path.back().timestamp > std::numeric_limits<uint32_t>::max()) {
-    throw InputError("--run: " + run.folder +
-                     ": Foxglove has times from 1970 to 2106; export the poses "
+    throw InputError((run.folder.empty() ? "" : "--run: " + run.folder + ": ") +
+                     "Foxglove has times from 1970 to 2106; export the poses "
                      "with --to=tum");
   }
   RequireWritable(options.output);

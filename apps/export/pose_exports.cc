@@ -67,6 +67,11 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
 }
 
 std::string ExportG2o(const FinishedRun& run, const ExportOptions& options) {
+  if (run.folder.empty()) {
+    throw InputError(
+        "g2o: a path alone has no measured motions; export the folder of a run "
+        "of rgbd_odometry or rgbd_slam");
+  }
   const std::filesystem::path solved =
       std::filesystem::path(run.folder) / "graph.g2o";
   const std::string text = std::filesystem::exists(solved)

@@ -147,9 +147,16 @@ std::string PathFrom(const py::object& path) {
   return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
 }
 
+py::str PathTo(const std::string& path) {
+  return py::module_::import("os").attr("fsdecode")(py::bytes(path));
+}
+
 void WarnUser(const std::string& remark) {
   if (remark.empty()) return;
-  if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 1) != 0) {
+  // A path in it may not be valid UTF-8.
+  const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+      remark.data(), static_cast<py::ssize_t>(remark.size()), "replace"));
+  if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", text.ptr()) != 0) {
     throw py::error_already_set();  // users may make warnings errors
   }
 }

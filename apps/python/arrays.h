@@ -109,7 +109,9 @@ auto PropertiesOf(Class* type) {
   };
 }
 
+// Paths are bytes here and, as in os.fsdecode, text in Python.
 std::string PathFrom(const pybind11::object& path);
+pybind11::str PathTo(const std::string& path);
 
 // Shows users a remark, for example on a file, as a UserWarning, unless it is
 // empty.

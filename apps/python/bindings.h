@@ -12,5 +12,6 @@ void BindRecording(pybind11::module_* module);
 void BindOdometry(pybind11::module_* module);
 void BindSlam(pybind11::module_* module);
 void BindEvaluation(pybind11::module_* module);
+void BindExport(pybind11::module_* module);  // after BindRecording
 
 }  // namespace rgbd_pose

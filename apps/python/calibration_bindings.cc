@@ -10,6 +10,7 @@
 #include "apps/python/released_gil.h"
 #include "apps/results/calibration_output.h"
 #include "apps/shell/program.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/calibration/calibration_run.h"
@@ -97,6 +98,10 @@ void BindCalibratedParameter(py::module_* module) {
            "value estimated from the recording");
   property("sigma", &CalibratedParameter::sigma,
            "standard deviation of the estimate");
+  parameter.def("__repr__", [](const CalibratedParameter& self) {
+    return Format("CalibratedParameter(%s: %.6g to %.6g +- %.2g)",
+                  ToString(self.status), self.before, self.found, self.sigma);
+  });
   parameter.def(Pickled<CalibratedParameter>());
 }
 
@@ -145,6 +150,9 @@ void BindResult(py::module_* module) {
       "Writes a file for the argument depth_noise. Raises InputError if "
       "depth_noise is\nNone.",
       py::arg("path"));
+  calibration.def("__repr__", [](const Calibration& self) {
+    return "Calibration(" + (self.is_accepted ? "accepted" : self.reason) + ")";
+  });
   calibration.def(Pickled<Calibration>());
 }
 

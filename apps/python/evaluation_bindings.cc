@@ -8,8 +8,10 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
+#include "core/evaluation/alignment.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
+#include "core/util/format.h"
 #include "core/util/text_file.h"
 
 namespace py = pybind11;
@@ -59,6 +61,7 @@ AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
   const double delta_seconds = 2.0 * max_time_difference + 1.0;
   const EvaluationReport report = EvaluateObjects(
       estimated, reference, {max_time_difference, delta_seconds});
+  WarnUser(Sim3Warning(report.sim3, report.ate.rmse));
   AteResult result{{report.ate, {}}, {}, report.truth_from_estimate};
   for (const PoseError& pose : report.poses) {
     result.timestamps.push_back(pose.timestamp);
@@ -82,6 +85,11 @@ RpeResult EvaluateRpe(const py::object& estimated, const py::object& reference,
   return result;
 }
 
+std::string ErrorsInWords(const char* name, const Errors& errors) {
+  return Format("%s(rmse=%.6g, max=%.6g, count=%d)", name, errors.rmse,
+                errors.max, static_cast<int>(errors.count));
+}
+
 void BindErrors(py::module_* module) {
   py::class_<Errors> errors(*module, "Errors",
                             "Errors (m or rad): statistics, which are 0 if "
@@ -95,10 +103,8 @@ void BindErrors(py::module_* module) {
   property("max", &Errors::max, "maximum");
   property("values", &ViewOf<Errors, &Errors::values>,
            "(count,), in the order of time");
-  errors.def("__repr__", [](const Errors& self) {
-    return "Errors(rmse=" + std::to_string(self.rmse) +
-           ", count=" + std::to_string(self.count) + ")";
-  });
+  errors.def("__repr__",
+             [](const Errors& self) { return ErrorsInWords("Errors", self); });
   errors.def(Pickled<Errors>());
 }
 
@@ -112,6 +118,9 @@ void BindAteResult(py::module_* module) {
            "(count,), of the estimated poses, s");
   property("reference_from_estimated", &AteResult::reference_from_estimated,
            "(4, 4), the rigid alignment");
+  result.def("__repr__", [](const AteResult& self) {
+    return ErrorsInWords("AteResult", self);
+  });
   result.def(Pickled<AteResult>());
 }
 
@@ -124,6 +133,11 @@ void BindRpeResult(py::module_* module) {
   property("rotation", &RpeResult::rotation, "Errors, rad");
   property("timestamps", &ViewOf<RpeResult, &RpeResult::timestamps>,
            "(count,), of the first pose of each interval, s");
+  result.def("__repr__", [](const RpeResult& self) {
+    return "RpeResult(translation=" +
+           ErrorsInWords("Errors", self.translation) +
+           ", rotation=" + ErrorsInWords("Errors", self.rotation) + ")";
+  });
   result.def(Pickled<RpeResult>());
 }
 
@@ -142,6 +156,7 @@ estimated, reference: path of a TUM text file, or a pair of time stamps (N,) (s,
     (N, 4, 4).
 max_time_difference: maximum time difference of paired poses (s).
 
+Warns of a size or shape that suggests a wrong depth scale, focal length or file.
 Raises InputError if no poses can be paired.)",
               py::arg("estimated"), py::arg("reference"),
               py::arg("max_time_difference") = difference);

@@ -31,6 +31,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   BindOdometry(&m);
   BindSlam(&m);
   BindEvaluation(&m);
+  BindExport(&m);
   BindCalibration(&m);
   m.attr("__name__") = own_name;
 }

@@ -12,6 +12,8 @@
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/tracker_bindings.h"
+#include "core/util/format.h"
+#include "core/util/units.h"
 #include "frontend/settings/settings.h"
 #include "frontend/tracking/tracked_frame.h"
 
@@ -34,12 +36,11 @@ class SharedOdometry : public SharedRun {
   }
 };
 
-std::string FrameInWords(const TrackedFrame& frame) {
-  std::string text = "TrackedFrame(" + std::to_string(frame.index) + ": " +
-                     ToString(frame.status);
-  if (!frame.reason.empty()) text += ", " + frame.reason;
-  return text + ", " + std::to_string(frame.inliers) + " of " +
-         std::to_string(frame.matches) + " matches agree)";
+std::string MotionInWords(const RelativePose& pose) {
+  const Rigid3d& motion = pose.cur_from_ref;
+  return Format("RelativePose(%d to %d: %.4f m, %.3f degrees)", pose.ref,
+                pose.cur, motion.translation.norm(),
+                motion.Angle() * kDegreesPerRadian);
 }
 
 void BindRelativePose(py::module_* module) {
@@ -53,7 +54,7 @@ void BindRelativePose(py::module_* module) {
            "(4, 4): point_in_cur = cur_from_ref @ point_in_ref (m)");
   property("covariance", &RelativePose::covariance,
            "(6, 6), as that of MotionEstimate");
-  pose.def(Pickled<RelativePose>());
+  pose.def("__repr__", &MotionInWords).def(Pickled<RelativePose>());
 }
 
 void BindTrackedFrame(py::module_* module) {
@@ -111,7 +112,12 @@ void BindTrackedFrame(py::module_* module) {
            "part of track_ms: features of a new reference");
   property("relocalise_ms", &TrackedFrame::relocalise_ms,
            "part of track_ms: relocalisation when lost");
-  frame.def("__repr__", &FrameInWords).def(Pickled<TrackedFrame>());
+  frame
+      .def("__repr__",
+           [](const TrackedFrame& self) {
+             return "TrackedFrame(" + FrameInWords(self) + ")";
+           })
+      .def(Pickled<TrackedFrame>());
 }
 
 void BindLivePage(py::module_* module) {

@@ -4,7 +4,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -16,6 +15,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
+#include "apps/python/recording.h"
 #include "apps/python/released_gil.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -47,9 +47,9 @@ std::unique_ptr<Dataset> OpenTumDataset(const py::object& folder,
 
 // Python's index of a frame, which may count from the end, from 0.
 int IndexAmong(int frames, int index) {
-  if (index < 0) index += frames;
-  if (index >= 0 && index < frames) return index;
-  throw py::index_error("there are " + std::to_string(frames) + " frames");
+  const int from_start = index < 0 ? index + frames : index;
+  if (from_start >= 0 && from_start < frames) return from_start;
+  throw py::index_error(Format("frame %d: there are %d frames", index, frames));
 }
 
 Frame ReadFrame(const Dataset& dataset, int index) {
@@ -58,68 +58,8 @@ Frame ReadFrame(const Dataset& dataset, int index) {
   return dataset.Read(index);
 }
 
-// A recording of any kind. Each iteration reads it from the start.
-class Recording {
- public:
-  explicit Recording(std::function<std::shared_ptr<FrameSource>()> open)
-      : open_(std::move(open)), source_(open_()) {}
-
-  const FrameSource& source() const { return *source_; }
-  const std::shared_ptr<std::mutex>& mutex() const { return mutex_; }
-
-  std::shared_ptr<FrameSource> Begin() {
-    if (is_used_) source_ = open_();
-    is_used_ = true;
-    return source_;
-  }
-
-  // Frame `index` from 0, by a reading of its own: forward from the last one
-  // if that was earlier. Call it without the GIL.
-  Frame Read(int index) {
-    std::optional<RgbdFrame> frame;
-    std::shared_ptr<FrameSource> source;
-    {
-      const std::lock_guard<std::mutex> lock(*mutex_);
-      if (picked_ == nullptr || index < next_) {
-        picked_ = open_();
-        next_ = 0;
-      }
-      for (source = picked_; next_ <= index; ++next_) frame = source->Next();
-    }
-    if (!frame.has_value()) {
-      throw InputError("the recording ends before frame " +
-                       std::to_string(index));
-    }
-    return frame->read();
-  }
-
-  // All inertial samples, by a reading of its own. Call it without the GIL.
-  std::vector<ImuSample> ReadImu() const {
-    std::vector<ImuSample> samples;
-    if (!source_->imu().has_value()) return samples;
-    const std::shared_ptr<FrameSource> source = open_();
-    while (const std::optional<RgbdFrame> frame = source->Next()) {
-      samples.insert(samples.end(), frame->imu.begin(), frame->imu.end());
-    }
-    return samples;
-  }
-
- private:
-  std::function<std::shared_ptr<FrameSource>()> open_;
-  std::shared_ptr<FrameSource> source_;
-  std::shared_ptr<std::mutex> mutex_ = std::make_shared<std::mutex>();
-  bool is_used_ = false;
-  std::shared_ptr<FrameSource> picked_;  // null: no frame was picked
-  int next_ = 0;                         // number of the next frame of picked_
-};
-
-std::vector<double> TimesOf(const Recording& recording) {
-  const std::lock_guard<std::mutex> lock(*recording.mutex());
-  return recording.source().timestamps();
-}
-
 int LengthOf(const Recording& recording) {
-  const size_t frames = TimesOf(recording).size();
+  const size_t frames = recording.timestamps().size();
   if (frames > 0) return static_cast<int>(frames);
   throw py::type_error(
       "the number of frames of this recording is not known in advance; loop "
@@ -151,9 +91,26 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
   options.depth_scale = depth_scale;
   options.topics = topics;
   if (!imu.is_none()) options.imu = PathFrom(imu);
-  return Recording([options, source, range = ParseFrameRange(frames)] {
-    return PartOf(OpenSource(source, options), range);
-  });
+  Recording recording(
+      options.path,
+      [options, source, range = ParseFrameRange(frames)](bool keep_color) {
+        SourceOptions with_color = options;
+        with_color.keep_color = keep_color;
+        return PartOf(OpenSource(source, with_color), range);
+      });
+  for (const std::string& remark : recording.source().remarks()) {
+    WarnUser(remark);
+  }
+  return recording;
+}
+
+std::string RecordingInWords(const Recording& recording) {
+  const Camera& camera = recording.source().camera().camera;
+  const size_t frames = recording.timestamps().size();
+  const std::string length =
+      frames == 0 ? "" : ", " + std::to_string(frames) + " frames";
+  return "Recording(" + py::repr(PathTo(recording.path())).cast<std::string>() +
+         length + Format(", %d x %d)", camera.width, camera.height);
 }
 
 py::array ImuSamplesOf(const Recording& recording) {
@@ -231,6 +188,10 @@ are accessed, with the GIL released.)")
       .def(py::init(&OpenTumDataset), "Raises InputError for unreadable input.",
            py::arg("folder"), py::arg("camera").none(false),
            py::arg("associations") = py::none())
+      .def("__repr__",
+           [](const Dataset& self) {
+             return "TumDataset(" + std::to_string(self.size()) + " frames)";
+           })
       .def("__len__", &Dataset::size)
       .def("__getitem__", &ReadFrame, py::arg("index"))
       .def("__iter__",
@@ -265,7 +226,8 @@ imu: file that says mounting, delay or noise of the inertial sensor (Kalibr's);
     None: what the camera file and the recording say; "none": its samples are
     not read.
 
-Raises InputError for unreadable input.)");
+Warns of what was chosen or left out on opening, such as a frame rate that the
+recording does not specify. Raises InputError for unreadable input.)");
   recording.def(py::init(&OpenRecording),
                 "Raises InputError for unreadable input.", py::arg("path"),
                 py::arg("camera") = py::none(), py::kw_only(),
@@ -286,6 +248,7 @@ Raises InputError for unreadable input.)");
         });
     return py::module_::import("builtins").attr("iter")(next, py::none());
   });
+  recording.def("__repr__", &RecordingInWords);
   recording.def("__len__", &LengthOf);
   // Not by the length, which may be unknown.
   recording.def("__bool__", [](const Recording&) { return true; });
@@ -303,7 +266,9 @@ Raises InputError for unreadable input.)");
       "camera of all frames");
   property(
       "timestamps",
-      [](const Recording& self) { return py::array(py::cast(TimesOf(self))); },
+      [](const Recording& self) {
+        return py::array(py::cast(self.timestamps()));
+      },
       "(N,) of all frames, s; empty if they are not known in advance");
   recording.def(
       "ground_truth",

@@ -34,8 +34,10 @@ void DefineWithSettings(pybind11::module_* module, const char* name,
   const pybind11::cpp_function probe(function, pybind11::name(name), extra...);
   auto signature = probe.attr("__doc__").template cast<std::string>();
   const std::string keywords = "**kwargs";
+  // py::kw_only() is only shown if named arguments follow it.
+  const bool has_star = signature.find(" *, ") != std::string::npos;
   signature.replace(signature.find(keywords), keywords.size(),
-                    ArgumentsOf(table));
+                    (has_star ? "" : "*, ") + ArgumentsOf(table));
   const std::string text = signature + help + "\n\n" + HelpOf(table);
   pybind11::options options;
   options.disable_function_signatures();

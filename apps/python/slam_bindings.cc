@@ -13,6 +13,7 @@
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/tracker_bindings.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/settings/settings.h"
 #include "frontend/slam/map_folder.h"
@@ -167,7 +168,13 @@ void BindSlamFrame(py::module_* module) {
            "mapping time in the background thread, ms");
   property("wait_ms", &SlamFrame::wait_ms,
            "time that tracking waited for the map, ms");
-  frame.def(Pickled<FrameInMap>());
+  frame
+      .def("__repr__",
+           [](const FrameInMap& self) {
+             return Format("SlamFrame(%s, pairs=%d, loops=%d)",
+                           FrameInWords(self).c_str(), self.pairs, self.loops);
+           })
+      .def(Pickled<FrameInMap>());
 }
 
 void BindKeyframe(py::module_* module) {
@@ -189,7 +196,15 @@ void BindKeyframe(py::module_* module) {
       "(6, 6), of a small rotation about the axes of the camera (rad) and of "
       "its\ncentre in the map (m); zero for the first of a segment, None if it "
       "cannot\nbe computed");
-  keyframe.def(Pickled<KeyframePose>());
+  keyframe
+      .def("__repr__",
+           [](const KeyframePose& self) {
+             const Eigen::Vector3d& at = self.map_from_cam.translation;
+             return Format(
+                 "Keyframe(%d at %.6f s: segment %d, centre %.3f %.3f %.3f m)",
+                 self.id, self.timestamp, self.segment, at.x(), at.y(), at.z());
+           })
+      .def(Pickled<KeyframePose>());
 }
 
 }  // namespace

@@ -55,11 +55,12 @@ cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
 
 }  // namespace
 
-void WarnInPython(const std::string& text) {
-  if (text.empty()) return;
-  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), /*stack_level=*/1) != 0) {
-    throw py::error_already_set();  // the user wants errors
-  }
+std::string FrameInWords(const TrackedFrame& frame) {
+  std::string text =
+      std::to_string(frame.index) + ": " + ToString(frame.status);
+  if (!frame.reason.empty()) text += ", " + frame.reason;
+  return text + ", " + std::to_string(frame.inliers) + " of " +
+         std::to_string(frame.matches) + " matches agree";
 }
 
 Frame FrameFromArrays(const py::object& image, const py::object& depth,
@@ -99,7 +100,7 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
     }
   }
   if (too_far > used) {
-    WarnInPython(
+    WarnUser(
         "depth: most values are above 13 m and are not used; check the depth "
         "scale: float32 is in metres, millimetres are uint16 with a camera of "
         "depth_scale=1000");

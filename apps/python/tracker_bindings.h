@@ -25,8 +25,8 @@
 
 namespace rgbd_pose {
 
-// Warns in Python (UserWarning) unless the text is empty.
-void WarnInPython(const std::string& text);
+// What a tracked frame shows of itself: number, status, reason, matches.
+std::string FrameInWords(const TrackedFrame& frame);
 
 // Makes a frame with copies of the Python images (see Odometry.track):
 // frontends keep images, while camera drivers overwrite theirs. Warns of depths
@@ -125,7 +125,10 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
     if (!motion_guess.is_none()) {
       guess = RigidFromArray(motion_guess, "motion_guess");
     }
-    if (!has_frames(self)) WarnInPython(DepthScaleWarning(frame));
+    if (!has_frames(self)) {
+      WarnUser(self->camera().camera.SanityWarning());
+      WarnUser(DepthScaleWarning(frame));
+    }
     const ReleasedGil no_gil;
     return self->Track(std::move(frame), timestamp,
                        guess.has_value() ? &*guess : nullptr);

@@ -125,7 +125,7 @@ def main():
                  for name in {**docs_exceptions.EXCEPTIONS,
                               **docs_exceptions.BEFORE} if name not in pages]
     problems += [f'{path.name}: no page mentions docs/examples/{path.name}'
-                 for path in sorted((source / 'docs/examples').glob('*.[cp]*'))
+                 for path in sorted((source / 'docs/examples').glob('*.[cip]*'))
                  if f'docs/examples/{path.name}' not in examples]
     if problems:
         sys.exit('\n'.join(problems))

@@ -1,6 +1,7 @@
 #!/bin/sh
-# `pip install .` in a fresh virtual environment, without the network: the
-# module can be imported, has its stubs, and can be removed.
+# `pip wheel .`, without the network: its one file can be installed in a fresh
+# virtual environment, where the module can be imported, has its stubs, and can
+# be removed.
 # usage: pip_test.sh PYTHON SOURCE_FOLDER [BUILD_FOLDER]
 # Without BUILD_FOLDER everything is compiled, in a copy of the sources.
 set -eu
@@ -44,10 +45,19 @@ if [ "$(wc -l <"$folder/said")" -ne 1 ] ||
   cat "$folder/said"
   exit 1
 fi
+# Builds where nothing is installed, not even numpy.
+"$python" -m venv "$folder/builder"
+"$folder/builder/bin/python" -m pip --disable-pip-version-check wheel \
+  --no-index --no-deps --quiet --wheel-dir "$folder/wheels" "$sources"
+if [ "$(ls "$folder/wheels" | wc -l)" -ne 1 ]; then
+  ls "$folder/wheels"
+  exit 1
+fi
+rm -rf "$folder/builder"
 # Uses the distribution's numpy.
 "$python" -m venv --system-site-packages "$folder/venv"
 pip="$folder/venv/bin/python -m pip --disable-pip-version-check"
-$pip install --no-index --no-build-isolation --quiet "$sources"
+$pip install --no-index --quiet "$folder"/wheels/rgbd_pose-*.whl
 cd "$folder"
 venv/bin/python - <<'END'
 import pathlib
@@ -59,6 +69,8 @@ folder = pathlib.Path(rgbd_pose.__file__).parent
 assert str(folder).startswith(sys.prefix), folder
 assert (folder / "py.typed").exists() and (folder / "__init__.pyi").exists()
 assert "tum_fr1" in rgbd_pose.camera_presets()
+points = [[0, 0, 2], [1, 0, 3], [0, 1, 2], [1, 1, 4]] * 20
+assert rgbd_pose.estimate_motion(points, points).ok
 END
 $pip show rgbd_pose | grep -q '^Version: [0-9]'
 $pip uninstall --yes --quiet rgbd_pose

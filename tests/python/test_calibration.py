@@ -43,6 +43,11 @@ def test_finds_what_is_wrong(calibration):
     assert 0 < fx.sigma < 2
     assert calibration.parameters["depth_factor"].status == "fixed"
     assert "the new camera is better" in calibration.summary
+    assert repr(calibration) == "Calibration(accepted)"
+    assert repr(fx) == (
+        f"CalibratedParameter(determined: 535.5 to {fx.found:.6g} "
+        f"+- {fx.sigma:.2g})"
+    )
 
 
 def test_keeps_what_is_fixed(recording, wrong):

@@ -1,6 +1,7 @@
 """Compares the evaluation with the program rgbd_evaluate."""
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -162,3 +163,31 @@ def test_bad_trajectories_are_told_in_one_line(estimated, words):
         with pytest.raises(rgbd_pose.InputError, match=words) as error:
             evaluate(estimated, GOOD)
         assert "\n" not in str(error.value)
+
+
+def test_errors_say_how_large_they_are(files):
+    ate, rpe = rgbd_pose.evaluate_ate(*files), rgbd_pose.evaluate_rpe(*files)
+
+    def words(name, errors):
+        return (
+            f"{name}(rmse={errors.rmse:.6g}, max={errors.max:.6g}, "
+            f"count={errors.count})"
+        )
+
+    assert repr(ate) == words("AteResult", ate)
+    assert repr(rpe) == (
+        f"RpeResult(translation={words('Errors', rpe.translation)}, "
+        f"rotation={words('Errors', rpe.rotation)})"
+    )
+
+
+def test_a_path_of_another_size_is_said(files):
+    stamps, poses = rgbd_pose.read_trajectory(files[0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rgbd_pose.evaluate_ate((stamps, poses), files[1])
+    small = poses.copy()
+    small[:, :3, 3] /= 5  # millimetres taken for units of 0.2 mm
+    with pytest.warns(UserWarning, match="scaled by 5.*the depth scale") as said:
+        rgbd_pose.evaluate_ate((stamps, small), files[1])
+    assert len(said) == 1 and said[0].filename == __file__

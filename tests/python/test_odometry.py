@@ -347,6 +347,19 @@ def test_depth_in_wrong_units_is_said_once(type, dataset, camera):
     assert "check the depth scale" in str(said[0].message)
 
 
+def test_an_unusual_camera_is_said_once(dataset, camera):
+    camera = rgbd_pose.Camera(
+        camera.fx, 0.9 * camera.fy, camera.cx, camera.cy,
+        width=camera.width, height=camera.height,
+        depth_scale=camera.depth_scale,
+    )
+    odometry = rgbd_pose.Odometry(camera)
+    with pytest.warns(UserWarning, match="fx .* and fy .* differ") as said:
+        for frame in list(dataset)[:2]:
+            odometry.track(frame.gray, frame.depth)
+    assert len(said) == 1
+
+
 def test_a_warning_as_an_error_changes_nothing(dataset, camera):
     odometry = rgbd_pose.Odometry(camera)
     with warnings.catch_warnings():

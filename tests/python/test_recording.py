@@ -1,6 +1,8 @@
 """Recordings of all kinds as sequences of frames."""
 
+import os
 import shutil
+import warnings
 
 import numpy as np
 import pytest
@@ -70,13 +72,31 @@ def test_finds_out_what_kind_it_is(sequence, camera, whole, tmp_path):
         images = sorted((sequence / kind).iterdir())
         for i, image in enumerate(images[:3]):
             shutil.copy(image, tmp_path / f"frame-{i:06}.{name}.png")
-    recording = rgbd_pose.Recording(tmp_path, camera)
+    with pytest.warns(UserWarning, match="30 frames per second are assumed"):
+        recording = rgbd_pose.Recording(tmp_path, camera)
     frames = list(recording)
     np.testing.assert_allclose(recording.timestamps, np.arange(3) / 30)
     np.testing.assert_array_equal(frames[1].gray, whole[1].gray)
     assert len(recording.ground_truth()[0]) == 0
-    scaled = rgbd_pose.Recording(tmp_path, "ros_default")
+    with pytest.warns(UserWarning, match="frames per second"):
+        scaled = rgbd_pose.Recording(tmp_path, "ros_default")
     assert scaled.camera.depth_scale == 1000
+
+
+def test_warns_once_and_of_any_name(sequence, camera, tmp_path):
+    folder = os.fsencode(tmp_path) + b"/caf\xe9"  # not UTF-8
+    os.mkdir(folder)
+    for kind, name in (("rgb", b"color"), ("depth", b"depth")):
+        image = sorted((sequence / kind).iterdir())[0]
+        shutil.copy(image, folder + b"/frame-000000.%s.png" % name)
+    with pytest.warns(UserWarning) as said:
+        recording = rgbd_pose.Recording(folder, camera)
+        list(recording), list(recording), recording[0]
+    assert len(said) == 1 and said[0].filename == __file__
+    assert "/caf\ufffd: has no timestamps" in str(said[0].message)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rgbd_pose.Recording(sequence)  # nothing to say
 
 
 def test_refuses_what_it_cannot_read(sequence, tmp_path):
@@ -99,8 +119,9 @@ def test_has_a_length_and_frames_by_number(sequence, whole):
     for i, frame in ((1, whole[4]), (-1, whole[6]), (0, whole[2])):
         np.testing.assert_array_equal(recording[i].gray, frame.gray)
         assert recording[i].timestamp == frame.timestamp
-    with pytest.raises(IndexError, match="there are 3 frames"):
-        recording[3]
+    for index in (3, -4):
+        with pytest.raises(IndexError, match=f"{index}: there are 3 frames"):
+            recording[index]
     # A loop is not disturbed.
     loop = iter(recording)
     assert next(loop).index == 0 and recording[2].index == 2
@@ -111,6 +132,14 @@ def test_frames_say_what_they_are(whole):
     frame = whole[3]
     height, width = frame.gray.shape
     assert repr(frame) == f"Frame(3 at {frame.timestamp:.6f} s, {width} x {height})"
+
+
+def test_says_what_it_is(sequence, camera):
+    size = f"{camera.width} x {camera.height}"
+    recording = rgbd_pose.Recording(sequence, frames="2-6:2")
+    assert repr(recording) == f"Recording({str(sequence)!r}, 3 frames, {size})"
+    dataset = rgbd_pose.TumDataset(sequence, camera)
+    assert repr(dataset) == "TumDataset(8 frames)"
 
 
 def test_brings_its_inertial_samples(sequence, tmp_path):

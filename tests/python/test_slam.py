@@ -109,6 +109,24 @@ def test_poses_hang_together(mapped, frames):
         np.linalg.cholesky(edge.covariance)
 
 
+def test_results_say_what_they_are(mapped):
+    slam, tracked, _ = mapped
+    frame, keyframe, edge = tracked[-1], slam.keyframes()[-1], slam.edges()[0]
+    assert repr(frame) == (
+        f"SlamFrame({frame.index}: ok, {frame.inliers} of {frame.matches} "
+        f"matches agree, pairs={frame.pairs}, loops={frame.loops})"
+    )
+    x, y, z = keyframe.map_from_cam[:3, 3]
+    assert repr(keyframe) == (
+        f"Keyframe({keyframe.id} at {keyframe.timestamp:.6f} s: segment 0, "
+        f"centre {x:.3f} {y:.3f} {z:.3f} m)"
+    )
+    metres = np.linalg.norm(edge.cur_from_ref[:3, 3])
+    assert repr(edge).startswith(
+        f"RelativePose({edge.ref} to {edge.cur}: {metres:.4f} m, "
+    )
+
+
 def test_a_place_is_found_again(mapped, frames, camera):
     slam, _, folder = mapped
     before = (folder / "map.txt").read_bytes()

@@ -490,6 +490,46 @@ def evaluate_rpe(
 def read_trajectory(path: _Path) -> Tuple[_Floats, _Floats]: ...
 def write_trajectory(path: _Path, trajectory: _Trajectory) -> None: ...
 
+class Export:
+    @property
+    def path(self) -> str: ...
+    @property
+    def summary(self) -> str: ...
+    def __fspath__(self) -> str: ...
+
+def export_formats() -> List[str]: ...
+def export_run(
+    run: _Path,
+    to: str,
+    output: Optional[_Path] = None,
+    *,
+    dataset: Optional[_Path] = None,
+    camera: Optional[_Path] = None,
+    overwrite: bool = False,
+    min_distance: float = 0.05,
+    min_angle: float = 3.0,
+    undistort: bool = False,
+    voxel: float = 0.01,
+    max_depth: float = 0.0,
+    max_points: int = 200000,
+    threads: int = 0,
+) -> Export: ...
+def export_path(
+    recording: Recording,
+    trajectory: _Trajectory,
+    to: str,
+    output: _Path,
+    *,
+    overwrite: bool = False,
+    min_distance: float = 0.05,
+    min_angle: float = 3.0,
+    undistort: bool = False,
+    voxel: float = 0.01,
+    max_depth: float = 0.0,
+    max_points: int = 200000,
+    threads: int = 0,
+) -> Export: ...
+
 class CalibratedParameter:
     @property
     def status(self) -> Literal["fixed", "not determined", "determined"]: ...

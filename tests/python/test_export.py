@@ -1,0 +1,147 @@
+"""Exports, compared with those of the program rgbd_export."""
+
+import filecmp
+import os
+import signal
+
+import numpy as np
+import pytest
+
+import rgbd_pose
+from conftest import run_program
+
+COARSE = {"voxel": 0.04}
+
+
+@pytest.fixture(scope="module")
+def run(sequence, tmp_path_factory):
+    """Folder of the results of rgbd_odometry."""
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    run_program(
+        "rgbd_odometry", f"--dataset={sequence}", "--noreport",
+        f"--output={folder}",
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def recording(sequence):
+    return rgbd_pose.Recording(sequence)
+
+
+def by_program(run, name, output):
+    return run_program(
+        "rgbd_export", f"--run={run}", f"--to={name}", f"--output={output}",
+        "--voxel=0.04",
+    )
+
+
+def assert_same(one, other):
+    if os.path.isfile(one):
+        assert filecmp.cmp(one, other, shallow=False)
+        return
+    names = sorted(os.listdir(one))
+    assert names == sorted(os.listdir(other)) and names
+    for name in names:
+        assert_same(os.path.join(one, name), os.path.join(other, name))
+
+
+@pytest.mark.parametrize("name", rgbd_pose.export_formats())
+def test_is_that_of_the_program(name, run, recording, tmp_path):
+    ending = {"mesh": ".glb", "cloud": ".ply"}.get(name, "")
+    theirs, ours = tmp_path / f"theirs{ending}", tmp_path / f"ours{ending}"
+    said = by_program(run, name, theirs)
+    written = rgbd_pose.export_run(run, name, ours, **COARSE)
+    assert_same(ours, theirs)
+    assert written.path == os.fspath(written) == str(ours)
+    assert written.summary == said.replace(str(theirs), str(ours))
+    assert repr(written) == f"Export({str(ours)!r})"
+    if name == "g2o":
+        return  # a path has no graph
+    path = tmp_path / f"path{ending}"
+    of_run = run / "trajectory.txt"
+    rgbd_pose.export_path(recording, of_run, name, path, **COARSE)
+    assert_same(path, theirs)
+
+
+def test_a_path_that_was_tracked_here(recording, tmp_path, monkeypatch):
+    (tmp_path / "empty").mkdir()
+    monkeypatch.chdir(tmp_path / "empty")
+    odometry = rgbd_pose.Odometry(recording.camera)
+    for frame in recording:
+        odometry.track(frame.gray, frame.depth, frame.timestamp)
+    mesh = rgbd_pose.export_path(
+        recording, odometry.trajectory, "mesh", tmp_path / "room.ply",
+        min_distance=0, **COARSE,
+    )
+    assert "triangles of 8 frames" in mesh.summary
+    with open(mesh, "rb") as file:
+        assert file.read(3) == b"ply"
+    stamps, poses = odometry.trajectory
+    part = rgbd_pose.export_path(
+        recording, (stamps[2:5], poses[2:5]), "mesh", tmp_path / "part.ply",
+        min_distance=0, **COARSE,
+    )
+    assert "triangles of 3 frames" in part.summary
+    assert not os.listdir(), "files that nobody asked for"
+
+
+def test_a_name_of_its_own(run):
+    written = rgbd_pose.export_run(run, "tum")
+    assert written.path == str(run / "trajectory_tum.txt")
+    stamps, poses = rgbd_pose.read_trajectory(written)
+    np.testing.assert_allclose(
+        poses, rgbd_pose.read_trajectory(run / "trajectory.txt")[1], atol=1e-8
+    )
+
+
+def test_says_what_is_wrong(run, recording, sequence, tmp_path):
+    path = run / "trajectory.txt"
+
+    def of_run(folder=run, to="tum", output=tmp_path / "out", **settings):
+        rgbd_pose.export_run(folder, to, output, **settings)
+
+    def of_path(trajectory=path, to="mesh", output=tmp_path / "out.ply"):
+        rgbd_pose.export_path(recording, trajectory, to, output)
+
+    rgbd_pose.export_run(run, "kitti", tmp_path / "full")
+    late = (np.array([1e6]), np.eye(4)[None])
+    for match, export in [
+        ("no such folder", lambda: of_run(tmp_path / "none")),
+        ("has no frames.csv", lambda: of_run(sequence)),
+        ("unknown format 'obj'", lambda: of_run(to="obj")),
+        ("max_points must be 8", lambda: of_run(max_points=1)),
+        ("min_angle must not be negative", lambda: of_run(min_angle=-1.0)),
+        ("is not empty", lambda: of_run(to="kitti", output=tmp_path / "full")),
+        ("/none, does not exist", lambda: of_run(to="cloud", dataset="/none")),
+        ("no measured motions", lambda: of_path(to="g2o")),
+        ("output", lambda: of_path(to="tum", output="")),
+        ("no frame at 1000000", lambda: of_path(late)),
+        ("trajectory", lambda: of_path(np.eye(4))),
+        ("no poses", lambda: of_path((np.zeros(0), np.zeros((0, 4, 4))))),
+    ]:
+        with pytest.raises(rgbd_pose.InputError, match=match) as error:
+            export()
+        assert "\n" not in str(error.value)
+    with pytest.raises(TypeError, match=r"export_run\(\) got .* 'size'"):
+        of_run(size=3)
+    with pytest.raises(TypeError, match=r"voxel must be float"):
+        of_run(voxel="fine")
+    assert sorted(os.listdir(tmp_path)) == ["full"]
+
+
+def test_can_be_interrupted(run, recording, tmp_path):
+    def stop(number, frame):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, stop)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.01)
+        with pytest.raises(KeyboardInterrupt):
+            rgbd_pose.export_run(
+                run, "colmap", tmp_path / "out", min_distance=0
+            )
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert not os.listdir(tmp_path)
