@@ -14,6 +14,11 @@ constexpr double kSmallFlowPx = 0.2;
 // Rounds for the first two frames: each determines the velocity of the other.
 constexpr int kMaxRounds = 3;
 
+// The velocities of the first two frames err in opposite directions. The second
+// one has to fit the first, or else features contradict the motion: it counts
+// with this share of the variance of the first.
+constexpr double kShareOfFirst = 0.25;
+
 // A hand moves more slowly; a wrong estimate may be faster.
 constexpr double kMaxAngular = 6.0;  // rad/s
 constexpr double kMaxLinear = 4.0;   // m/s
@@ -133,10 +138,9 @@ VelocityPrior ShutterTracking::PriorOf(
     const std::optional<Rigid3d>& prev_from_ref, double interval,
     double middle) const {
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  // Neither velocity of the first two frames is known. The second one is that
-  // which fits the first.
+  prior.reference_covariance = reference.velocity_covariance;
   const bool is_second = early_.has_value() && !early_->velocity.has_value();
-  if (!is_second) prior.reference_covariance = reference.velocity_covariance;
+  if (is_second) prior.reference_covariance *= kShareOfFirst;
   return prior;
 }
 
