@@ -206,6 +206,9 @@ void Slam::Finish() {
   search_.reset();  // too late to be of use
   ApplyPendingUpdates(std::numeric_limits<int>::max(), &unused);
   Apply(worker_.Submit([this] { return mapper_.Finish(); }).get(), &unused);
+  if (meter_.has_value()) {
+    gravity_ = EstimateGravity(*meter_, PathsBySegment());
+  }
 }
 
 Trajectory Slam::Path() const {
@@ -215,6 +218,15 @@ Trajectory Slam::Path() const {
                                          frame.keyframe_from_cam});
   }
   return path;
+}
+
+std::map<int, Trajectory> Slam::PathsBySegment() const {
+  const Trajectory path = Path();
+  std::map<int, Trajectory> paths;
+  for (size_t i = 0; i < path.size(); ++i) {
+    paths[segments_.at(path_[i].keyframe)].push_back(path[i]);
+  }
+  return paths;
 }
 
 std::vector<Setting> SettingTable(SlamSettings* settings) {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
+#include "core/inertial/gravity_estimate.h"
+#include "core/inertial/mean_force.h"
 #include "core/util/worker.h"
 #include "frontend/settings/settings.h"
 #include "frontend/slam/mapper.h"
@@ -72,6 +74,16 @@ class Slam {
   // InputError for a map of another camera or an invalid map.
   void Load(KeyframeMap map, bool is_held);
 
+  // Says what is known of an inertial sensor beside the camera; call it before
+  // the first frame.
+  void UseImu(const ImuSensor& sensor) { meter_.emplace(sensor); }
+
+  // Adds samples of that sensor (RgbdFrame::imu) in the order of their stamps.
+  // Without UseImu they have no effect.
+  void AddImu(const std::vector<ImuSample>& samples) {
+    if (meter_.has_value()) meter_->Add(samples);
+  }
+
   // See Odometry::Track.
   SlamFrame Track(const Frame& frame,
                   const Rigid3d* cur_from_prev_guess = nullptr,
@@ -107,6 +119,10 @@ class Slam {
   // The current poses (map_from_cam) of all frames that were not lost.
   Trajectory Path() const;
 
+  // After Finish: gravity in the world of the segment with the most frames;
+  // nothing without UseImu.
+  const std::optional<GravityEstimate>& gravity() const { return gravity_; }
+
   // The current poses (map_from_cam) of keyframes by map id, and the links
   // between keyframes that were applied so far.
   const std::map<int, Rigid3d>& keyframe_poses() const {
@@ -130,6 +146,8 @@ class Slam {
   void BecomeReference(const TrackedFrame& tracked);
   // Passes a keyframe of the odometry to the mapper.
   void AddKeyframe(const TrackedFrame& tracked);
+  // The current poses (map_from_cam) of the frames of each segment.
+  std::map<int, Trajectory> PathsBySegment() const;
   void ApplyPendingUpdates(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
   void Adopt(Keyframe keyframe);
@@ -157,7 +175,9 @@ class Slam {
   int first_id_ = 0;       // offset of new keyframe ids
   int first_segment_ = 0;  // offset of new segments
 
-  std::string error_;  // of the last update
+  std::string error_;                       // of the last update
+  std::optional<ForceMeter> meter_;         // of the inertial sensor
+  std::optional<GravityEstimate> gravity_;  // since Finish
   std::vector<PathFrame> path_;
   // Keyframes that no update includes yet, oldest first, and their references.
   struct Pending {
