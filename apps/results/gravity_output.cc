@@ -28,7 +28,7 @@ std::string FormatGravity(const nlohmann::json& gravity) {
   if (!refusal.empty()) return "gravity     not determined: " + refusal + "\n";
   const nlohmann::json& up = gravity.at("up");
   return Format(
-      "gravity     up is (%.4f %.4f %.4f) in the world, sigma %.2f degrees\n",
+      "gravity     up is (%.4f %.4f %.4f) in the world, sigma %.2g degrees\n",
       up[0].get<double>(), up[1].get<double>(), up[2].get<double>(),
       gravity.at("sigma_deg").get<double>());
 }

@@ -53,6 +53,23 @@ Eigen::Vector3d MedianOf(const std::vector<MeanForce>& forces) {
   return median;
 }
 
+// Per axis of the world, in which gravity takes up what all means share.
+double BiasEffect(const std::vector<MeanForce>& forces,
+                  const Eigen::Matrix3d& bias_covariance) {
+  const double n = static_cast<double>(forces.size());
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  for (const MeanForce& force : forces) {
+    mean += force.world_from_cam.rotation.toRotationMatrix() / n;
+  }
+  double sum = 0.0;
+  for (const MeanForce& force : forces) {
+    const Eigen::Matrix3d turn =
+        force.world_from_cam.rotation.toRotationMatrix() - mean;
+    sum += (turn * bias_covariance * turn.transpose()).trace();
+  }
+  return std::sqrt(sum / (3.0 * n));
+}
+
 std::string FaultOf(const GravityEstimate& estimate) {
   if (std::abs(estimate.acceleration / kGravity - 1.0) > kGravityTolerance) {
     return Format(
@@ -124,6 +141,7 @@ GravityEstimate EstimateGravity(const std::vector<MeanForce>& forces) {
   estimate.acceleration = x.head<3>().norm();
   estimate.bias = x.tail<3>();
   estimate.bias_covariance = covariance.bottomRightCorner<3, 3>();
+  estimate.bias_effect = BiasEffect(forces, estimate.bias_covariance);
   estimate.refusal = FaultOf(estimate);
   if (!estimate.ok()) return estimate;
   estimate.up = x.head<3>().normalized();

@@ -25,6 +25,10 @@ struct GravityEstimate {
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   Eigen::Matrix3d bias_covariance = Eigen::Matrix3d::Zero();
 
+  // The standard deviation, m/s^2, of what the uncertain bias changes in the
+  // means of the path, less what it changes in all of them alike.
+  double bias_effect = 0.0;
+
   double acceleration = 0.0;  // of gravity as measured, m/s^2
   double scatter = 0.0;  // standard deviation of each axis of one mean, m/s^2
   int means = 0;         // how many there were

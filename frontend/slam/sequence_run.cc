@@ -45,7 +45,7 @@ void SequenceRun::DegradeLast(const std::string& reason) {
 }
 
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
-  if (slam_ != nullptr) slam_->Finish();
+  if (slam_ != nullptr) FinishSlam();
   results_.trajectory = Path();
   results_.gravity = Gravity();
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
@@ -59,6 +59,18 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
     }
   }
   return std::move(results_);
+}
+
+void SequenceRun::FinishSlam() {
+  slam_->Finish();
+  const Rigid3d& upright_from_tracked = slam_->upright_from_tracked();
+  if (upright_from_tracked.IsIdentity()) return;
+  for (SlamFrame& frame : slam_frames_) {
+    frame.map_from_odom = upright_from_tracked * frame.map_from_odom;
+  }
+  for (TrackedFrame& frame : results_.frames) {
+    frame.world_from_cam = upright_from_tracked * frame.world_from_cam;
+  }
 }
 
 std::optional<GravityEstimate> SequenceRun::Gravity() const {

@@ -123,6 +123,8 @@ class SequenceRun {
  private:
   TrackedFrame Track(const PreparedFrame& frame,
                      const Rigid3d* cur_from_prev_guess);
+  // Finishes the Slam, and brings the frames into its final world.
+  void FinishSlam();
   std::optional<GravityEstimate> Gravity() const;
 
   RunInputs inputs_;

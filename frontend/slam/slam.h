@@ -24,6 +24,10 @@ struct SlamSettings {
   // Results of the mapping thread are applied this number of frames after their
   // keyframe, waited for if late: they do not depend on the machine's speed.
   int update_delay = 10;
+
+  // Whether Finish turns the world upright, if gravity is known and no map was
+  // loaded: see Slam::upright_from_tracked.
+  bool upright = false;
 };
 
 // The settings by name, bound to `settings`, which must outlive the table.
@@ -95,7 +99,8 @@ class Slam {
                   const MotionMatrix* guess_covariance = nullptr);
   void Prepare(const PreparedFrame& frame) const { odometry_.Prepare(frame); }
 
-  // Waits for the mapping thread and optimises all keyframes once more.
+  // Waits for the mapping thread, optimises all keyframes once more, with what
+  // is known of gravity, and turns the world upright (SlamSettings::upright).
   // Afterwards only the following functions may be called.
   void Finish();
 
@@ -118,6 +123,12 @@ class Slam {
 
   // The current poses (map_from_cam) of all frames that were not lost.
   Trajectory Path() const;
+
+  // After Finish: how it has turned the poses of the map: by the smallest angle
+  // that lets the z axis of the world point up, about the first camera. The
+  // identity if it was not to, without gravity and with a loaded map, whose
+  // world stays. It applies to SlamFrame::map_from_odom of frames before.
+  const Rigid3d& upright_from_tracked() const { return upright_from_tracked_; }
 
   // After Finish: gravity in the world of the segment with the most frames;
   // nothing without UseImu.
@@ -146,8 +157,13 @@ class Slam {
   void BecomeReference(const TrackedFrame& tracked);
   // Passes a keyframe of the odometry to the mapper.
   void AddKeyframe(const TrackedFrame& tracked);
-  // The current poses (map_from_cam) of the frames of each segment.
+
+  // In slam_gravity.cc. The current poses (map_from_cam) of the frames of each
+  // segment; gives the mapper what is measured of gravity in its keyframes.
   std::map<int, Trajectory> PathsBySegment() const;
+  void MeasureUps();
+  void FindGravity();
+
   void ApplyPendingUpdates(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
   void Adopt(Keyframe keyframe);
@@ -178,6 +194,7 @@ class Slam {
   std::string error_;                       // of the last update
   std::optional<ForceMeter> meter_;         // of the inertial sensor
   std::optional<GravityEstimate> gravity_;  // since Finish
+  Rigid3d upright_from_tracked_;            // likewise
   std::vector<PathFrame> path_;
   // Keyframes that no update includes yet, oldest first, and their references.
   struct Pending {
