@@ -11,6 +11,8 @@ namespace {
 // Sides may be shorter by this share, where a path begins or frames are rare.
 constexpr double kShortest = 0.8;
 
+constexpr double kRounding = 1e-6;  // of stamps, s
+
 // The acceleration of a sample in between.
 Eigen::Vector3d AccelAt(const ImuSample& a, const ImuSample& b, double stamp) {
   return a.accel +
@@ -76,11 +78,11 @@ std::optional<MeanForce> ForceMeter::At(const Trajectory& path,
   if (!cam_from_imu.has_value()) return std::nullopt;
   const auto time = [&](size_t pose) { return path[pose].timestamp; };
   size_t from = at, to = at;
-  while (from > 0 && time(at) - time(from) < kShortest * kSide &&
+  while (from > 0 && time(at) - time(from) < kSide - kRounding &&
          time(from) - time(from - 1) <= kMaxGap) {
     --from;
   }
-  while (to + 1 < path.size() && time(to) - time(at) < kShortest * kSide &&
+  while (to + 1 < path.size() && time(to) - time(at) < kSide - kRounding &&
          time(to + 1) - time(to) <= kMaxGap) {
     ++to;
   }

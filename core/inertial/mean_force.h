@@ -34,8 +34,8 @@ struct MeanForce {
 class ForceMeter {
  public:
   // The usual length of each side, t1 - t0 and t2 - t1, s. An error of 1 mm of
-  // a position turns the result by 0.06 degrees; within a second, a path
-  // drifts by less.
+  // the position at t1 turns the result by 0.05 degrees; within a second, a
+  // path drifts by less.
   static constexpr double kSide = 0.5;
 
   // Poses that are further apart (s) do not say how the camera turned between.
