@@ -5,6 +5,7 @@
 #include "apps/results/evaluation_report.h"
 #include "apps/results/evaluation_summary.h"
 #include "apps/results/frame_tables.h"
+#include "apps/results/gravity_output.h"
 #include "apps/results/run_summary.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -171,6 +172,10 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                               {"weights_zero", residuals.weights_zero},
                               {"degrees_counts", residuals.degrees}}}};
   metrics.update(more);
+  if (results.gravity.has_value()) {
+    metrics["gravity"] = GravityToJson(*results.gravity);
+    text += FormatGravity(metrics["gravity"]);
+  }
   const double jitter_ms = jitters_ms_.empty() ? 0.0 : Median(jitters_ms_);
   if (jitter_ms > kNoticedJitterMs) {
     Warn(

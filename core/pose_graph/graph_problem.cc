@@ -39,6 +39,15 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width) {
         MakeFactor(RelativePoseFactor{edge.cur_from_ref, edge.root}), loss,
         x_[edge.ref].data(), x_[edge.cur].data());
   }
+  for (const GraphTerms::Direction& direction : graph.directions) {
+    if (graph.IsIdle(direction.a, direction.b)) continue;
+    ceres::LossFunction* loss = nullptr;
+    if (direction.loss != nullptr) {
+      loss = &losses_.emplace_back(direction.loss, width);
+    }
+    problem_->AddResidualBlock(MakeFactor(direction.factor), loss,
+                               x_[direction.a].data(), x_[direction.b].data());
+  }
 }
 
 double GraphProblem::norm() const {

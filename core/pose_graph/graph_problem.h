@@ -14,10 +14,11 @@
 
 namespace rgbd_pose {
 
-// A graph as one Ceres problem: poses and RelativePoseFactors.
+// A graph as one Ceres problem: poses, RelativePoseFactors and
+// CommonDirectionFactors.
 class GraphProblem {
  public:
-  // The losses on edges are widened by the factor `width`.
+  // The losses are widened by the factor `width`.
   GraphProblem(const GraphTerms& graph, double width);
 
   // Whether no measurement could move a pose.

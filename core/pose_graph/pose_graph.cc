@@ -54,18 +54,19 @@ double CostOf(const GraphTerms& graph, double width) {
 
 std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
+constexpr double kRounding = 1e-6;  // of lengths in single precision
+
 // What is wrong with a motion, or an empty text. A user may have set its
 // members by hand.
 std::string FaultOf(const Rigid3d& motion) {
   if (!motion.IsFinite()) return "is not finite";
-  constexpr double kRounding = 1e-6;  // of quaternions in single precision
   const double norm = motion.rotation.norm();
   if (std::abs(norm - 1.0) <= kRounding) return "";
   return "has a quaternion of length " + Format("%.7g", norm) + " instead of 1";
 }
 
-// One line on invalid values, or an edge that does not connect two poses; empty
-// if there is nothing wrong.
+// One line on invalid values, or a measurement that is not between two poses;
+// empty if there is nothing wrong.
 std::string FindBadInput(const GraphTerms& graph) {
   for (size_t i = 0; i < graph.poses.size(); ++i) {
     const std::string fault = FaultOf(graph.poses[i].world_from_cam);
@@ -84,6 +85,23 @@ std::string FindBadInput(const GraphTerms& graph) {
     if (!fault.empty()) return name + " has a motion that " + fault;
     if (!edge.root.allFinite()) {
       return name + " has a covariance that is not positive definite";
+    }
+  }
+  for (const GraphTerms::Direction& direction : graph.directions) {
+    const int a = direction.a, b = direction.b;
+    const std::string name =
+        "the direction in " + NameOf(a) + " and " + NameOf(b);
+    if (!has(a) || !has(b) || a == b) {
+      return name + " is not one in two poses of the graph";
+    }
+    const CommonDirectionFactor& factor = direction.factor;
+    for (const Eigen::Vector3d& end : {factor.in_a, factor.in_b}) {
+      if (!(std::abs(end.norm() - 1.0) <= kRounding)) {
+        return name + " is not of length 1";
+      }
+    }
+    if (!(factor.sigma > 0.0) || !std::isfinite(factor.sigma)) {
+      return name + " has a sigma that is not above 0";
     }
   }
   return "";

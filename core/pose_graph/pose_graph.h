@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "core/factors/common_direction.h"
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
 
-// The content of a PoseGraph: poses and the motions measured between them.
+// The content of a PoseGraph: poses and what was measured between them.
 struct GraphTerms {
   // A node of the graph.
   struct Pose {
@@ -22,10 +23,18 @@ struct GraphTerms {
     MotionMatrix root;                          // see SqrtInformation
     const ceres::LossFunction* loss = nullptr;  // null: least squares
   };
+  // A direction measured in the axes of two poses.
+  struct Direction {
+    int a = 0;
+    int b = 0;
+    CommonDirectionFactor factor;
+    const ceres::LossFunction* loss = nullptr;  // null: least squares
+  };
   std::vector<Pose> poses;  // index = number
   std::vector<Edge> edges;  // in the order of addition
+  std::vector<Direction> directions;
 
-  // Whether an edge between the two poses has no effect.
+  // Whether a measurement between the two poses has no effect.
   bool IsIdle(int ref, int cur) const {
     return poses[ref].is_fixed && poses[cur].is_fixed;
   }
@@ -92,7 +101,8 @@ struct GraphSolution {
 };
 
 // Poses that are optimised together until they agree best with the motions
-// measured between them. Invalid data gives a status of Solve, never an abort.
+// and directions measured between them. Invalid data gives a status of Solve,
+// never an abort.
 class PoseGraph {
  public:
   // Throws InputError for invalid options (see Check).
@@ -108,6 +118,14 @@ class PoseGraph {
   // squares) must outlive the graph and applies to all 6 whitened rows.
   void AddEdge(const RelativePose& edge,
                const ceres::LossFunction* loss = nullptr);
+
+  // Adds a direction measured in the axes of two poses, such as gravity in a
+  // camera and in an upright frame. It connects nothing: both poses need edges.
+  // The loss is as for edges.
+  void AddDirection(int a, int b, const CommonDirectionFactor& factor,
+                    const ceres::LossFunction* loss = nullptr) {
+    graph_.directions.push_back({a, b, factor, loss});
+  }
 
   // Optimises the poses that are not fixed. Starts where they are or, if that
   // costs less, where the shortest paths of edges without a loss put them.

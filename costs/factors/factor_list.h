@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/factors/common_direction.h"
 #include "core/factors/relative_pose.h"
 #include "core/util/type_list.h"
 #include "costs/factors/absolute_pose.h"
@@ -20,8 +21,8 @@ namespace rgbd_pose {
 // rgbd_jacobians follow from this list.
 using FactorTypes =
     TypeList<AbsolutePoseFactor, AbsolutePositionFactor, RelativePoseFactor,
-             RelativeRotationFactor, GravityFactor, ConstantVelocityFactor,
-             DistanceFactor, MapPlaneFactor, LandmarkFactor, GyroscopeFactor,
-             InertialFactor>;
+             RelativeRotationFactor, GravityFactor, CommonDirectionFactor,
+             ConstantVelocityFactor, DistanceFactor, MapPlaneFactor,
+             LandmarkFactor, GyroscopeFactor, InertialFactor>;
 
 }  // namespace rgbd_pose

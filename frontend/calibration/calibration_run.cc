@@ -84,6 +84,7 @@ RecordingCalibration CalibrateRecording(
   for (int pass = 1;; ++pass) {
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
+    opened.inputs.imu.reset();  // it says nothing of the camera
     const int frames = static_cast<int>(opened.source->timestamps().size());
     const RgbdCamera camera = opened.source->camera();
     SequenceRun run(with_shutter, slam, camera, opened.inputs);

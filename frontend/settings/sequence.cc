@@ -184,6 +184,7 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
   }
   const FrameRange range = ParseFrameRange(settings.frames);
   sequence.source = PartOf(OpenSource(settings.source, options), range);
+  sequence.inputs.imu = sequence.source->imu();
   sequence.compares = settings.groundtruth != "none";
   if (sequence.compares) {
     FindTruth(settings, &sequence);

@@ -39,6 +39,8 @@ struct RunInputs {
   double max_damaged = 0.05;
   // Of the ground truth, as far as its file or the recording tells.
   TruthNoise truth_noise = {};
+  // The inertial sensor whose samples come with the frames; nothing: none.
+  std::optional<ImuSensor> imu = {};
 };
 
 // An open sequence.

@@ -190,7 +190,57 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
     edge.cur = problem.pose_of[edge.cur];
     problem.graph.AddEdge(edge, LossOf(pair));
   }
+  AddUps(is_free, &problem);
   return problem;
+}
+
+// Each segment has an upright frame of its own, which is estimated as well:
+// from all of its keyframes, also those that stay where they are.
+void KeyframeGraph::AddUps(const std::vector<bool>& is_free,
+                           Problem* problem) const {
+  struct Segment {
+    Eigen::Vector3d up = Eigen::Vector3d::Zero();  // a sum
+    bool is_free = false;
+    int upright = -1;  // its number in the problem
+  };
+  const auto has_up = [this](int at) {
+    return nodes_[at].up.has_value() && !IsRemoved(at);
+  };
+  std::map<int, Segment> segments;
+  for (int at = 0; at < size(); ++at) {
+    if (!has_up(at)) continue;
+    Segment* const whole = &segments[segment(at)];
+    whole->up += pose(at).rotation * nodes_[at].up->in_cam;
+    whole->is_free |= is_free[at];
+  }
+  const auto number = [&](int at) {
+    int* const known = &problem->pose_of[at];
+    if (*known < 0) *known = problem->graph.AddPose(pose(at), true);
+    return *known;
+  };
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  for (int at = 0; at < size(); ++at) {
+    if (!has_up(at)) continue;
+    Segment* const whole = &segments[segment(at)];
+    if (!whole->is_free) continue;
+    if (whole->upright < 0) {
+      const int first = first_of_.at(segment(at));
+      const Rigid3d map_from_upright(
+          Eigen::Quaterniond::FromTwoVectors(z, whole->up),
+          pose(first).translation);
+      whole->upright = problem->graph.AddPose(map_from_upright);
+      // As good as unknown: it only keeps what nothing measures where it is.
+      RelativePose loose;
+      loose.ref = number(first);
+      loose.cur = whole->upright;
+      loose.cur_from_ref = map_from_upright.Inverse() * pose(first);
+      loose.covariance.setIdentity();
+      problem->graph.AddEdge(loose);
+    }
+    const Up& up = *nodes_[at].up;
+    problem->graph.AddDirection(number(at), whole->upright,
+                                {up.in_cam, z, up.sigma}, pair_loss_.get());
+  }
 }
 
 std::string KeyframeGraph::Solve(const std::vector<int>& free, bool graduated) {

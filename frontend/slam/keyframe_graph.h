@@ -85,6 +85,13 @@ class KeyframeGraph {
   // Adds a pair within a segment.
   void AddPair(const RelativePose& edge, bool is_tracked, bool is_loop = false);
 
+  // Says which way is up in the axes of a keyframe (of length 1), with a sigma
+  // (rad): its tilt in the world is measured then. Which way is up in the world
+  // of a segment is estimated with the poses.
+  void SetUp(int at, const Eigen::Vector3d& up_in_cam, double sigma) {
+    nodes_[at].up = {up_in_cam, sigma};
+  }
+
   // Whether a motion is consistent with a path of other pairs: chi^2 with 6
   // degrees of freedom is below its 99.9 % quantile. False without a path.
   bool PassesMahalanobisGate(const RelativePose& edge) const;
@@ -102,6 +109,13 @@ class KeyframeGraph {
   // Converts a motion from a removed keyframe to one from its anchor. Other
   // motions are returned unchanged.
   RelativePose Reanchor(RelativePose edge) const;
+
+  // Turns and moves the worlds of all segments.
+  void MoveAll(const Rigid3d& moved_from_map) {
+    for (Node& node : nodes_) {
+      node.map_from_cam = moved_from_map * node.map_from_cam;
+    }
+  }
 
   // Optimise the poses around the newest keyframe, or all poses. Return the
   // reason of a failure, or an empty string.
@@ -122,16 +136,23 @@ class KeyframeGraph {
   double proportional_error() const { return proportional_error_; }
 
  private:
+  // Which way is up in the axes of a keyframe, and its sigma, rad.
+  struct Up {
+    Eigen::Vector3d in_cam;
+    double sigma = 0.0;
+  };
   struct Node {
     Rigid3d map_from_cam;
     int segment = 0;
     bool is_held = false;
     std::optional<RelativePose> from_anchor;  // of a removed keyframe
+    std::optional<Up> up = {};
   };
   struct Problem;
 
   bool IsFixed(int at) const;
   Problem Build(const std::vector<int>& free, bool graduated) const;
+  void AddUps(const std::vector<bool>& is_free, Problem* problem) const;
   std::string Solve(const std::vector<int>& free, bool graduated);
   std::vector<int> All() const;
 

@@ -195,6 +195,13 @@ MapUpdate Mapper::Finish() {
   return update;
 }
 
+MapUpdate Mapper::MoveAll(const Rigid3d& moved_from_map) {
+  MapUpdate update;
+  graph_.MoveAll(moved_from_map);
+  PublishMovedPoses(&update);
+  return update;
+}
+
 void Mapper::PublishMovedPoses(MapUpdate* update) {
   for (int at = 0; at < graph_.size(); ++at) {
     MappedKeyframe& keyframe = keyframes_[at];

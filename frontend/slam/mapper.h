@@ -98,8 +98,17 @@ class Mapper {
   // Relocalises a lost frame in the whole map; returns a keyframe of the place.
   std::optional<Keyframe> Find(const PreparedFrame& lost);
 
+  // Says which way is up in the axes of a keyframe, by id:
+  // KeyframeGraph::SetUp. Without effect for one that was removed.
+  void SetUp(int id, const Eigen::Vector3d& up_in_cam, double sigma) {
+    graph_.SetUp(numbers_.at(id), up_in_cam, sigma);
+  }
+
   // Optimises all poses.
   MapUpdate Finish();
+
+  // Turns and moves the worlds of all segments.
+  MapUpdate MoveAll(const Rigid3d& moved_from_map);
 
   // All keyframes that were not removed, and their pairs. Covariances are as
   // measured, or `as_solved` by KeyframeGraph::CovarianceAsSolved.

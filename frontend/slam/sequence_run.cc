@@ -1,6 +1,7 @@
 #include "frontend/slam/sequence_run.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -14,6 +15,8 @@ void SequenceRun::Add(const StreamedFrame& next) {
     guess = MotionAlong(*inputs_.motion_guess, frames.back().timestamp,
                         next.frame.timestamp);
   }
+  if (slam_ != nullptr) slam_->AddImu(next.imu);
+  if (meter_.has_value()) meter_->Add(next.imu);
   Add(next.frame, guess.has_value() ? &*guess : nullptr);
   results_.frames.back().decode_ms = next.decode_ms;
 }
@@ -42,8 +45,9 @@ void SequenceRun::DegradeLast(const std::string& reason) {
 }
 
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
-  if (slam_ != nullptr) slam_->Finish();
+  if (slam_ != nullptr) FinishSlam();
   results_.trajectory = Path();
+  results_.gravity = Gravity();
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
@@ -55,6 +59,29 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
     }
   }
   return std::move(results_);
+}
+
+void SequenceRun::FinishSlam() {
+  slam_->Finish();
+  const Rigid3d& upright_from_tracked = slam_->upright_from_tracked();
+  if (upright_from_tracked.IsIdentity()) return;
+  for (SlamFrame& frame : slam_frames_) {
+    frame.map_from_odom = upright_from_tracked * frame.map_from_odom;
+  }
+  for (TrackedFrame& frame : results_.frames) {
+    frame.world_from_cam = upright_from_tracked * frame.world_from_cam;
+  }
+}
+
+std::optional<GravityEstimate> SequenceRun::Gravity() const {
+  if (slam_ != nullptr) return slam_->gravity();
+  if (!meter_.has_value()) return std::nullopt;
+  std::map<int, Trajectory> paths;
+  for (const TrackedFrame& frame : results_.frames) {
+    if (frame.status == TrackingStatus::kLost) continue;
+    paths[frame.segment].push_back({frame.timestamp, frame.world_from_cam});
+  }
+  return EstimateGravity(*meter_, paths);
 }
 
 Trajectory SequenceRun::Path() const {

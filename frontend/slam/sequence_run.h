@@ -11,6 +11,8 @@
 #include "core/estimation/motion_estimate.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
+#include "core/inertial/gravity_estimate.h"
+#include "core/inertial/mean_force.h"
 #include "frontend/settings/sequence.h"
 #include "frontend/settings/settings.h"
 #include "frontend/slam/slam.h"
@@ -49,6 +51,9 @@ struct RunResults {
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
+  // In the world of the trajectory; nothing without an inertial sensor.
+  std::optional<GravityEstimate> gravity;
+
   double TrackedShare() const {
     if (frames.empty()) return 0.0;
     return static_cast<double>(trajectory.size()) / frames.size();
@@ -61,14 +66,18 @@ class SequenceRun {
   // With an Odometry. Throws InputError for invalid settings.
   SequenceRun(const OdometrySettings& settings, const RgbdCamera& camera,
               const RunInputs& inputs = {})
-      : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {}
+      : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {
+    if (inputs.imu.has_value()) meter_.emplace(*inputs.imu);
+  }
 
   // With a Slam: frames and debug images have the poses known at the time; the
   // trajectory has the final poses. Throws InputError for invalid settings.
   SequenceRun(const OdometrySettings& odometry, const SlamSettings& settings,
               const RgbdCamera& camera, const RunInputs& inputs = {})
       : inputs_(inputs),
-        slam_(std::make_unique<Slam>(odometry, settings, camera)) {}
+        slam_(std::make_unique<Slam>(odometry, settings, camera)) {
+    if (inputs.imu.has_value()) slam_->UseImu(*inputs.imu);
+  }
 
   void Add(const StreamedFrame& next);
 
@@ -114,10 +123,14 @@ class SequenceRun {
  private:
   TrackedFrame Track(const PreparedFrame& frame,
                      const Rigid3d* cur_from_prev_guess);
+  // Finishes the Slam, and brings the frames into its final world.
+  void FinishSlam();
+  std::optional<GravityEstimate> Gravity() const;
 
   RunInputs inputs_;
   std::optional<Odometry> odometry_;  // nothing with a Slam
   std::unique_ptr<Slam> slam_;        // null: without a map
+  std::optional<ForceMeter> meter_;   // nothing with a Slam, which has one
   std::vector<SlamFrame> slam_frames_;
   RunResults results_;
 };

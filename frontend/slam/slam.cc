@@ -205,7 +205,9 @@ void Slam::Finish() {
   is_previous_late_ = false;
   search_.reset();  // too late to be of use
   ApplyPendingUpdates(std::numeric_limits<int>::max(), &unused);
+  if (meter_.has_value()) MeasureUps();
   Apply(worker_.Submit([this] { return mapper_.Finish(); }).get(), &unused);
+  if (meter_.has_value()) FindGravity();
 }
 
 Trajectory Slam::Path() const {
@@ -242,6 +244,10 @@ std::vector<Setting> SettingTable(SlamSettings* settings) {
        &mapping->window},
       {"update_delay", kGroup, "latency of map updates, in frames",
        &settings->update_delay},
+      {"upright", kGroup,
+       "turn the world so that z is up, if an inertial sensor says where that "
+       "is; a loaded map is never turned",
+       &settings->upright},
   };
 }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
+#include "core/inertial/gravity_estimate.h"
+#include "core/inertial/mean_force.h"
 #include "core/util/worker.h"
 #include "frontend/settings/settings.h"
 #include "frontend/slam/mapper.h"
@@ -22,6 +24,10 @@ struct SlamSettings {
   // Results of the mapping thread are applied this number of frames after their
   // keyframe, waited for if late: they do not depend on the machine's speed.
   int update_delay = 10;
+
+  // Whether Finish turns the world upright, if gravity is known and no map was
+  // loaded: see Slam::upright_from_tracked.
+  bool upright = false;
 };
 
 // The settings by name, bound to `settings`, which must outlive the table.
@@ -72,6 +78,16 @@ class Slam {
   // InputError for a map of another camera or an invalid map.
   void Load(KeyframeMap map, bool is_held);
 
+  // Says what is known of an inertial sensor beside the camera; call it before
+  // the first frame.
+  void UseImu(const ImuSensor& sensor) { meter_.emplace(sensor); }
+
+  // Adds samples of that sensor (RgbdFrame::imu) in the order of their stamps.
+  // Without UseImu they have no effect.
+  void AddImu(const std::vector<ImuSample>& samples) {
+    if (meter_.has_value()) meter_->Add(samples);
+  }
+
   // See Odometry::Track.
   SlamFrame Track(const Frame& frame,
                   const Rigid3d* cur_from_prev_guess = nullptr,
@@ -83,7 +99,8 @@ class Slam {
                   const MotionMatrix* guess_covariance = nullptr);
   void Prepare(const PreparedFrame& frame) const { odometry_.Prepare(frame); }
 
-  // Waits for the mapping thread and optimises all keyframes once more.
+  // Waits for the mapping thread, optimises all keyframes once more, with what
+  // is known of gravity, and turns the world upright (SlamSettings::upright).
   // Afterwards only the following functions may be called.
   void Finish();
 
@@ -106,6 +123,16 @@ class Slam {
 
   // The current poses (map_from_cam) of all frames that were not lost.
   Trajectory Path() const;
+
+  // After Finish: how it has turned the poses of the map: by the smallest angle
+  // that lets the z axis of the world point up, about the first camera. The
+  // identity if it was not to, without gravity and with a loaded map, whose
+  // world stays. It applies to SlamFrame::map_from_odom of frames before.
+  const Rigid3d& upright_from_tracked() const { return upright_from_tracked_; }
+
+  // After Finish: gravity in the world of the segment with the most frames;
+  // nothing without UseImu.
+  const std::optional<GravityEstimate>& gravity() const { return gravity_; }
 
   // The current poses (map_from_cam) of keyframes by map id, and the links
   // between keyframes that were applied so far.
@@ -130,6 +157,13 @@ class Slam {
   void BecomeReference(const TrackedFrame& tracked);
   // Passes a keyframe of the odometry to the mapper.
   void AddKeyframe(const TrackedFrame& tracked);
+
+  // In slam_gravity.cc. The current poses (map_from_cam) of the frames of each
+  // segment; gives the mapper what is measured of gravity in its keyframes.
+  std::map<int, Trajectory> PathsBySegment() const;
+  void MeasureUps();
+  void FindGravity();
+
   void ApplyPendingUpdates(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
   void Adopt(Keyframe keyframe);
@@ -157,7 +191,10 @@ class Slam {
   int first_id_ = 0;       // offset of new keyframe ids
   int first_segment_ = 0;  // offset of new segments
 
-  std::string error_;  // of the last update
+  std::string error_;                       // of the last update
+  std::optional<ForceMeter> meter_;         // of the inertial sensor
+  std::optional<GravityEstimate> gravity_;  // since Finish
+  Rigid3d upright_from_tracked_;            // likewise
   std::vector<PathFrame> path_;
   // Keyframes that no update includes yet, oldest first, and their references.
   struct Pending {

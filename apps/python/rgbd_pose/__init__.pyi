@@ -377,6 +377,7 @@ class Slam:
         drift: float = 0.01,
         window: int = 10,
         update_delay: int = 10,
+        upright: bool = False,
     ) -> None: ...
     def track(
         self,

@@ -68,6 +68,33 @@ TEST_F(OdometryProgramTest, SaysWhichDebugImagesThereCannotBe) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "run/debug/000002.png"));
 }
 
+// The world is the first camera of a path whose z axis is up.
+TEST_F(OdometryProgramTest, FindsGravityWhereThereAreInertialSamples) {
+  ASSERT_EQ(Run(Call("without") + " --noreport").exit_code, 0);
+  const auto metrics = [&](const std::string& run) {
+    return nlohmann::json::parse(
+        ReadTextFile(folder_ / (run + "/metrics.json")));
+  };
+  EXPECT_EQ(metrics("without").count("gravity"), 0);
+  ASSERT_EQ(Run(kSimulator + " --path=pan_tilt --frames=70 --imu --output=" +
+                (folder_ / "shaken"))
+                .exit_code,
+            0);
+  const std::string track = kTracker + " --dataset=" + (folder_ / "shaken") +
+                            " --noreport --output=" + (folder_ / "run");
+  const RunResult short_run = Run(track + " --frames=0-20");
+  EXPECT_THAT(short_run.out, HasSubstr("gravity     not determined: 0 parts"));
+  const RunResult run = Run(track);
+  EXPECT_THAT(run.out, HasSubstr("gravity     up is ("));
+  const nlohmann::json gravity = metrics("run").at("gravity");
+  const Trajectory truth = ReadTrajectory(folder_ / "shaken/groundtruth.txt");
+  const Eigen::Vector3d up =
+      truth[0].world_from_cam.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(gravity.at("up")[axis].get<double>(), up[axis], 0.005);
+  }
+}
+
 TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   const RunResult run = Run(Call("run"));
   ASSERT_EQ(run.exit_code, 0) << run.err;

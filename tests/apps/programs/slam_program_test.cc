@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -53,6 +54,58 @@ class SlamProgramTest : public testing::Test {
 
   const TempFolder folder_;
 };
+
+// The angle (rad) between up in the first camera of two paths, z being up.
+double TiltBetween(const Trajectory& a, const Trajectory& b) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  return std::acos(
+      std::min(1.0, (a[0].world_from_cam.rotation.conjugate() * z)
+                        .dot(b[0].world_from_cam.rotation.conjugate() * z)));
+}
+
+TEST_F(SlamProgramTest, TheWorldIsUprightInAllFilesOnceGravityIsKnown) {
+  const std::string render =
+      kRender +
+      " --path=pan_tilt --camera=" + std::string(folder_ / "half.yaml") +
+      " --frames=70 --imu --output=" + (folder_ / "shaken");
+  ASSERT_EQ(RunCommand(render, folder_).exit_code, 0);
+  const auto run = [&](const std::string& output, const std::string& flags) {
+    const RunResult result = RunCommand(
+        kSlam + " --dataset=" + (folder_ / "shaken") +
+            " --noreport --output=" + (folder_ / output) + " " + flags,
+        folder_);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  const auto path = [&](const std::string& file) {
+    return ReadTrajectory(folder_ / file);
+  };
+  const std::string map = folder_ / "upright_map";
+  EXPECT_THAT(run("upright", "--upright --save_map=" + map),
+              HasSubstr("up is (0.0000 0.0000 1.0000) in the world"));
+  const Trajectory truth = path("shaken/groundtruth.txt");
+  for (const char* file : {"trajectory.txt", "trajectory_online.txt"}) {
+    EXPECT_LT(TiltBetween(path(std::string("upright/") + file), truth), 0.005)
+        << file;
+  }
+  const auto metrics = nlohmann::json::parse(Read("upright/metrics.json"));
+  EXPECT_LT(metrics.at("evaluation").at("ate").at("position_m").at("rmse"),
+            0.005);
+
+  // The same path, but for the turn.
+  run("first_camera", "");
+  const Trajectory turned = path("upright/trajectory.txt"),
+                   other = path("first_camera/trajectory.txt");
+  EXPECT_GT(TiltBetween(other, truth), 0.5);
+  const Rigid3d moved =
+      other[60].world_from_cam.Inverse() * other[0].world_from_cam *
+      turned[0].world_from_cam.Inverse() * turned[60].world_from_cam;
+  EXPECT_LT(moved.translation.norm() + moved.Angle(), 1e-6);
+
+  // A map stays as it is.
+  run("again", "--localise_only --load_map=" + map);
+  EXPECT_LT(TiltBetween(path("again/trajectory.txt"), truth), 0.005);
+}
 
 TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   const std::string map = folder_ / "map";

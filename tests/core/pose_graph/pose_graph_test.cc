@@ -52,6 +52,23 @@ TEST(PoseGraphTest, ATreeTellsNothingTwice) {
   EXPECT_EQ(graph.OvercountingFactor(), 2.0);
 }
 
+TEST(PoseGraphTest, RefusesDirectionsThatAreNone) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  const auto reason = [](int a, int b, const CommonDirectionFactor& factor) {
+    PoseGraph graph = Circle(4).Graph();
+    graph.AddDirection(a, b, factor);
+    return graph.Solve().reason;
+  };
+  EXPECT_EQ(reason(1, 2, {z, z, 0.1}), "");
+  EXPECT_EQ(reason(1, 4, {z, z, 0.1}),
+            "the direction in pose 1 and pose 4 is not one in two poses of the "
+            "graph");
+  EXPECT_NE(reason(2, 2, {z, z, 0.1}), "");
+  EXPECT_NE(reason(1, 2, {2.0 * z, z, 0.1}), "");
+  EXPECT_NE(reason(1, 2, {z, kNan * z, 0.1}), "");
+  EXPECT_NE(reason(1, 2, {z, z, 0.0}), "");
+}
+
 // Edges between fixed poses tell nothing, and fixed poses need no edge.
 TEST(PoseGraphTest, FixedPosesDoNotDiluteTheFactor) {
   Circle circle(4);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
@@ -45,6 +46,67 @@ TEST(KeyframeGraphTest, ALoopTakesDriftBack) {
   circle.graph.AddPair(loop, /*is_tracked=*/false, /*is_loop=*/true);
   EXPECT_EQ(circle.graph.SolveAll(), "");
   EXPECT_LT(circle.LastError(), 0.3 * drift);
+}
+
+// Angle (rad) between the y axes of the world as two poses have it.
+double TiltBetween(const Rigid3d& a, const Rigid3d& b) {
+  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  return std::acos(std::min(
+      1.0, (a.rotation.conjugate() * y).dot(b.rotation.conjugate() * y)));
+}
+
+// The axis of the circle is up. One of the keyframes measures nonsense.
+TEST(KeyframeGraphTest, GravityHoldsTheTilt) {
+  Circle drifted, held;
+  RandomWorld random(7);
+  for (int i = 0; i < kPoses; ++i) {
+    const Eigen::Vector3d error(random.Normal(0.001), random.Normal(0.001),
+                                random.Normal(0.001));
+    const Eigen::Vector3d up =
+        held.truth[i].rotation.conjugate() * Eigen::Vector3d::UnitY() + error;
+    held.graph.SetUp(i, i == 20 ? -up.normalized() : up.normalized(), 0.001);
+  }
+  ASSERT_EQ(drifted.graph.SolveAll(), "");
+  ASSERT_EQ(held.graph.SolveAll(), "");
+  double before = 0.0, after = 0.0;
+  for (int i = 0; i < kPoses; ++i) {
+    before += TiltBetween(drifted.graph.pose(i), drifted.truth[i]) / kPoses;
+    after += TiltBetween(held.graph.pose(i), held.truth[i]) / kPoses;
+  }
+  EXPECT_GT(before, 0.002);
+  EXPECT_LT(after, 0.6 * before);
+  EXPECT_EQ(held.graph.pose(0), held.truth[0]);
+  EXPECT_EQ(held.graph.Covariances().size(), kPoses);
+  // It is known better, too.
+  EXPECT_LT(held.graph.Covariances().back()(0, 0),
+            0.2 * drifted.graph.Covariances().back()(0, 0));
+}
+
+// Those that stay where they are say how the world lies.
+TEST(KeyframeGraphTest, GravityHoldsTheTiltOfTheNewest) {
+  Circle drifted, held;
+  for (int i = 0; i < kPoses; ++i) {
+    held.graph.SetUp(
+        i, held.truth[i].rotation.conjugate() * Eigen::Vector3d::UnitY(),
+        i < kPoses / 2 ? 0.0001 : 0.001);
+  }
+  ASSERT_EQ(drifted.graph.SolveNear(kPoses - 1), "");
+  ASSERT_EQ(held.graph.SolveNear(kPoses - 1), "");
+  EXPECT_NE(held.graph.pose(kPoses - 1).rotation.coeffs(),
+            drifted.graph.pose(kPoses - 1).rotation.coeffs());
+  EXPECT_EQ(held.graph.pose(5), drifted.graph.pose(5));
+}
+
+TEST(KeyframeGraphTest, AllWorldsAreMovedTogether) {
+  Circle circle;
+  circle.graph.Add(circle.truth[3], 7);
+  const Rigid3d moved =
+      Rigid3d::FromRotationVector({1.0, 0.2, -0.3}, {1, 2, 3});
+  const Rigid3d motion = circle.graph.CurFromRef(4, 30);
+  circle.graph.MoveAll(moved);
+  EXPECT_EQ(circle.graph.pose(0), moved * circle.truth[0]);
+  EXPECT_EQ(circle.graph.pose(kPoses), moved * circle.truth[3]);
+  EXPECT_LT(ErrorOf(circle.graph.CurFromRef(4, 30), motion).translation, 1e-12);
 }
 
 TEST(KeyframeGraphTest, AllThatTheNewestIsPairedWithAreFreedNearIt) {

@@ -1,0 +1,32 @@
+#include "apps/results/gravity_output.h"
+
+#include <gtest/gtest.h>
+
+namespace rgbd_pose {
+namespace {
+
+TEST(GravityOutputTest, SaysWhatIsUpAndHowWell) {
+  GravityEstimate gravity;
+  gravity.up = {0.6, -0.8, 0.0};
+  gravity.sigma = 0.01;
+  gravity.bias_covariance.diagonal() << 0.04, 0.01, 0.09;
+  gravity.means = 12;
+  const nlohmann::json json = GravityToJson(gravity);
+  EXPECT_NEAR(json.at("sigma_deg").get<double>(), 0.573, 1e-3);
+  EXPECT_NEAR(json.at("accel_bias_sigma")[2].get<double>(), 0.3, 1e-12);
+  EXPECT_EQ(FormatGravity(json),
+            "gravity     up is (0.6000 -0.8000 0.0000) in the world, sigma "
+            "0.57 degrees\n");
+}
+
+TEST(GravityOutputTest, SaysWhyItIsNotKnown) {
+  GravityEstimate gravity;
+  gravity.refusal = "the camera fell";
+  const nlohmann::json json = GravityToJson(gravity);
+  EXPECT_EQ(json.count("up"), 0);
+  EXPECT_EQ(FormatGravity(json),
+            "gravity     not determined: the camera fell\n");
+}
+
+}  // namespace
+}  // namespace rgbd_pose
