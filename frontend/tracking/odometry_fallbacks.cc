@@ -53,22 +53,6 @@ const PreparedFrame* Odometry::LookFromLast(
   return found;
 }
 
-bool Odometry::MakeLastReference(TrackedFrame* result) {
-  if (!state_.last.has_value()) return false;
-  const StageTimer timer(&result->reference_ms);
-  std::string why_not;
-  OdometryKeyframe* const added =
-      AddKeyframe(*state_.last, nullptr, state_.reference, &why_not);
-  if (added == nullptr) return false;
-  state_.reference = added;
-  state_.shutter_tracking.AddReference(added);
-  result->previous_is_reference = true;
-  state_.last.reset();
-  state_.cur_from_ref = Rigid3d();
-  state_.covariance.setZero();
-  return true;
-}
-
 bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   std::optional<Relocalisation> place;
   {

@@ -1,0 +1,183 @@
+#include <optional>
+
+#include "core/util/stage_timer.h"
+#include "frontend/tracking/odometry.h"
+
+// The pose of one frame: predicted by coarse images, found by features,
+// refined by pixels.
+
+namespace rgbd_pose {
+namespace {
+
+// After a frame with fewer features that agree, pixels are needed at once.
+constexpr int kFewFeatures = 40;
+
+}  // namespace
+
+bool Odometry::Follow(const PreparedFrame& measured,
+                      const std::optional<Prediction>& prediction,
+                      TrackedFrame* result) {
+  state_.aligned = AlignToLast(measured, prediction);
+  if (!state_.aligned.has_value()) {
+    state_.effort = Effort::kEverything;
+  } else if (state_.has_few_features) {
+    state_.effort = Effort::kPixels;
+  } else {
+    state_.effort = Effort::kQuick;
+  }
+  // Pixels confirm features from where these were searched for.
+  const auto refine = [&](const PreparedFrame* seen) {
+    if (seen == nullptr || !attempts_.kept().needs_refinement) return;
+    const Rigid3d start =
+        state_.aligned.value_or(Rigid3d()) * state_.cur_from_ref;
+    attempts_.Refine(*seen, *state_.reference, GuessOf(start), result);
+    state_.shutter_tracking.Update(attempts_.kept());
+  };
+  const PreparedFrame* frame = Look(measured, prediction, result);
+  if (state_.effort == Effort::kPixels) refine(frame);
+  if (!state_.is_lost && !IsTrusted(frame, *result)) {
+    frame = LookFromLast(measured, prediction, frame, result);
+  }
+  while (frame == nullptr && state_.effort != Effort::kEverything) {
+    state_.effort =
+        state_.effort == Effort::kQuick ? Effort::kPixels : Effort::kEverything;
+    frame = Look(measured, prediction, result);
+  }
+  refine(frame);
+  // A doubtful pose does not end the lost state.
+  if (frame == nullptr ||
+      (state_.is_lost && result->status != TrackingStatus::kOk)) {
+    return false;
+  }
+  const TrackingResult& tracked = attempts_.kept();
+  state_.has_few_features = tracked.source == TrackingSource::kDirect ||
+                            tracked.estimate.num_inliers < kFewFeatures;
+  state_.twist = frame->twist;
+  if (tracked.velocity.has_value()) {
+    state_.twist_covariance = tracked.velocity->motion_covariance;
+  }
+  state_.cur_from_prev = state_.is_lost ? Rigid3d()
+                                        : last_estimate().cur_from_prev *
+                                              state_.cur_from_ref.Inverse();
+  if (!state_.is_lost && state_.interval > 0.0) {
+    state_.timing_covariance = TimingCovariance(
+        measured, TwistOf(state_.cur_from_prev, state_.interval));
+  }
+  TakeMotion(result);
+  if (state_.has_shutter) state_.shutter_tracking.Accept(tracked);
+  if (state_.earlier_segment.has_value()) {
+    ReturnToEarlierSegment(*frame, result);
+  }
+  Accept(*frame, result);
+  return true;
+}
+
+std::optional<Rigid3d> Odometry::AlignToLast(
+    const PreparedFrame& frame, const std::optional<Prediction>& prediction) {
+  if (state_.is_lost || state_.is_doubtful) return std::nullopt;
+  const Keyframe* last = nullptr;
+  if (state_.last.has_value()) {
+    last = &*state_.last;
+  } else if (state_.reference->id == num_frames_ - 2) {
+    last = state_.reference;
+  }
+  if (last == nullptr) return std::nullopt;
+  PreparedFrame seen = frame;
+  seen.twist = last->frame.twist;
+  return tracker_->AlignCoarsely(last->frame, seen,
+                                 prediction.has_value()
+                                     ? prediction->cur_from_prev
+                                     : state_.cur_from_prev);
+}
+
+// Tracks from where coarse images say that the camera is. Where they do not say
+// it, from the last pose, and only then from a constant velocity, which can
+// lock onto its own false motion.
+const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
+                                    const std::optional<Prediction>& prediction,
+                                    TrackedFrame* result) {
+  Rigid3d first = state_.cur_from_ref;
+  Rigid3d second = state_.cur_from_prev * state_.cur_from_ref;
+  std::optional<Rigid3d> aligned;
+  if (state_.aligned.has_value()) {
+    aligned = *state_.aligned * state_.cur_from_ref;
+  }
+  const auto track = [&](const PreparedFrame& frame,
+                         const VelocityPrior* velocity) {
+    const auto from = [&](const Rigid3d& cur_from_ref) {
+      TrackingGuess guess = GuessOf(cur_from_ref);
+      guess.velocity = velocity;
+      guess.leaves_refinement = state_.effort != Effort::kEverything;
+      return guess;
+    };
+    if (prediction.has_value()) {
+      TrackingGuess guess = from(prediction->cur_from_ref);
+      if (prediction->given != nullptr) {
+        guess.covariance = &prediction->covariance;
+      }
+      guess.search_at = aligned;
+      if (attempts_.Try(frame, *state_.reference, guess, result)) return true;
+    }
+    TrackingGuess start = from(first);
+    if (state_.effort != Effort::kEverything) {
+      start.search_at = aligned;
+      start.is_tentative = state_.effort == Effort::kQuick;
+      return attempts_.Try(frame, *state_.reference, start, result) &&
+             !attempts_.kept().is_partial;
+    }
+    const TrackingGuess other = from(second);
+    return attempts_.TryInTurn(
+        frame, *state_.reference, start, other,
+        [&](Rigid3d* cur_from_ref) {
+          const StageTimer timer(&result->relocalise_ms);
+          return relocaliser_.FindIn(frame, state_.reference, cur_from_ref);
+        },
+        result);
+  };
+  if (!state_.has_shutter) {
+    // A frame without a shutter among frames with one does not determine a
+    // velocity, and the known velocity is older than this frame.
+    state_.shutter_tracking.Forget();
+    return track(measured, nullptr) ? &measured : nullptr;
+  }
+  const auto track_again = [&](const PreparedFrame& frame,
+                               const VelocityPrior& velocity,
+                               const Rigid3d& cur_from_ref) {
+    TrackingGuess guess = GuessOf(cur_from_ref);
+    guess.velocity = &velocity;
+    guess.leaves_refinement = true;
+    return attempts_.TryAgain(frame, *state_.reference, guess, result);
+  };
+  std::optional<Twist> twist;
+  if (state_.interval > 0.0) {
+    if (prediction.has_value()) {
+      twist = TwistOf(prediction->cur_from_prev, state_.interval);
+    } else if (state_.aligned.has_value() &&
+               !state_.shutter_tracking.velocity()->last().has_value()) {
+      twist = TwistOf(*state_.aligned, state_.interval);
+    }
+  }
+  std::optional<Rigid3d> prev_from_ref;
+  if (!state_.is_lost) prev_from_ref = state_.cur_from_ref;
+  return state_.shutter_tracking.Follow(measured, state_.interval,
+                                        prev_from_ref, twist, state_.reference,
+                                        attempts_.kept(), track, track_again);
+}
+
+void Odometry::TakeMotion(TrackedFrame* result) {
+  const MotionEstimate& estimate = last_estimate();
+  state_.cur_from_ref = estimate.cur_from_prev;
+  state_.covariance = estimate.covariance;
+  if (!attempts_.kept().velocity.has_value()) {
+    state_.covariance += state_.twist_covariance;
+  }
+  state_.covariance +=
+      state_.timing_covariance + state_.reference->timing_covariance;
+  result->cur_from_reference = state_.cur_from_ref;
+  if (!HasMotion(estimate)) return;
+  result->edges.insert(result->edges.begin(),
+                       {state_.reference->id, result->index,
+                        state_.cur_from_ref, state_.covariance});
+}
+
+}  // namespace rgbd_pose
