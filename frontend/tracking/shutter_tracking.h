@@ -95,13 +95,12 @@ class ShutterTracking {
   VelocityPrior PriorOf(const OdometryKeyframe& reference,
                         const std::optional<Rigid3d>& prev_from_ref,
                         double interval, double middle) const;
-  // Moves the reference according to the mean velocity since then, whose
-  // covariance is due to that of the motion. Returns false if this has no
-  // advantage.
+  // Moves the reference according to the mean velocity since then.
+  // `covariance`: of the motion since then (see CovarianceInCurrentAxes).
+  // Returns false, and moves nothing, if that changes hardly anything.
   bool MoveReference(const Twist& since, const MotionMatrix& covariance,
                      double interval, OdometryKeyframe* reference);
-  // What is known of its velocity and its motion after the mean velocity since
-  // then.
+  // Returns what these two tell of its velocity and its motion.
   SmoothedFrame SmoothReference(const Twist& since,
                                 const MotionMatrix& covariance,
                                 double interval) const;
