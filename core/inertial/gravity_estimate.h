@@ -34,6 +34,7 @@ struct GravityEstimate {
   int means = 0;         // how many there were
   int segment = 0;       // the number of the world
 
+  // Whether it is known.
   bool ok() const { return refusal.empty(); }
 };
 

@@ -25,14 +25,14 @@ struct GraphTerms {
   };
   // A direction measured in the axes of two poses.
   struct Direction {
-    int a = 0;
-    int b = 0;
-    CommonDirectionFactor factor;
+    int a = 0;                                  // number of the first pose
+    int b = 0;                                  // number of the second pose
+    CommonDirectionFactor factor;               // with what was measured
     const ceres::LossFunction* loss = nullptr;  // null: least squares
   };
-  std::vector<Pose> poses;  // index = number
-  std::vector<Edge> edges;  // in the order of addition
-  std::vector<Direction> directions;
+  std::vector<Pose> poses;            // index = number
+  std::vector<Edge> edges;            // in the order of addition
+  std::vector<Direction> directions;  // in the order of addition
 
   // Whether a measurement between the two poses has no effect.
   bool IsIdle(int ref, int cur) const {
