@@ -64,6 +64,30 @@ void ImuBuffer::ForgetBefore(double stamp) {
   if (later != samples_.begin()) samples_.erase(samples_.begin(), later - 1);
 }
 
+bool ImuBuffer::Covers(double from, double to) const {
+  return from < to && !samples_.empty() && samples_.front().stamp <= from &&
+         to <= samples_.back().stamp && Find(from, to).gap == nullptr;
+}
+
+ImuBuffer::Interval ImuBuffer::Find(double from, double to) const {
+  Interval found;
+  found.first = &*std::upper_bound(samples_.begin(), samples_.end(), from,
+                                   [](double time, const ImuSample& sample) {
+                                     return time < sample.stamp;
+                                   }) -
+                1;
+  found.last = &*std::lower_bound(
+      samples_.begin(), samples_.end(), to,
+      [](const ImuSample& sample, double time) { return sample.stamp < time; });
+  for (const ImuSample* sample = found.first; sample != found.last; ++sample) {
+    if (sample[1].stamp - sample->stamp > max_gap_) {
+      found.gap = sample;
+      break;
+    }
+  }
+  return found;
+}
+
 std::vector<ImuSample> ImuBuffer::Between(double from, double to) const {
   if (!(from < to)) {
     throw InputError("an inertial interval from " + Seconds(from) + " to " +
@@ -76,22 +100,12 @@ std::vector<ImuSample> ImuBuffer::Between(double from, double to) const {
                      Seconds(samples_.back().stamp) + " do not cover " +
                      Seconds(from) + " to " + Seconds(to));
   }
-  // The last sample up to `from`, and the first one from `to` on.
-  const auto first = std::upper_bound(samples_.begin(), samples_.end(), from,
-                                      [](double time, const ImuSample& sample) {
-                                        return time < sample.stamp;
-                                      }) -
-                     1;
-  const auto last = std::lower_bound(
-      first, samples_.end(), to,
-      [](const ImuSample& sample, double time) { return sample.stamp < time; });
-  for (auto sample = first; sample != last; ++sample) {
-    const double gap = sample[1].stamp - sample->stamp;
-    if (gap > max_gap_) {
-      throw InputError("no inertial sample for " + Format("%.3f s", gap) +
-                       " after " + Seconds(sample->stamp) +
-                       Format(", the longest gap allowed is %g s", max_gap_));
-    }
+  const auto [first, last, gap] = Find(from, to);
+  if (gap != nullptr) {
+    throw InputError("no inertial sample for " +
+                     Format("%.3f s", gap[1].stamp - gap->stamp) + " after " +
+                     Seconds(gap->stamp) +
+                     Format(", the longest gap allowed is %g s", max_gap_));
   }
   std::vector<ImuSample> result;
   result.reserve(last - first + 1);

@@ -24,6 +24,10 @@ class ImuBuffer {
   // Forgets what is older than the last sample up to `stamp`.
   void ForgetBefore(double stamp);
 
+  // Whether Between has samples for an interval: they reach that far, and there
+  // is no gap.
+  bool Covers(double from, double to) const;
+
   // The samples from one time to a later one (s), interpolated linearly at both
   // ends: the first has the stamp `from`, the last `to`. Throws InputError if
   // the times are not in order, if the samples do not reach that far, or if
@@ -34,6 +38,15 @@ class ImuBuffer {
   const std::vector<ImuSample>& samples() const { return samples_; }
 
  private:
+  // The last sample up to a time, and the first one from a later time on; the
+  // sample between them that is followed by a gap, or null.
+  struct Interval {
+    const ImuSample* first = nullptr;
+    const ImuSample* last = nullptr;
+    const ImuSample* gap = nullptr;
+  };
+  Interval Find(double from, double to) const;
+
   const double max_gap_;
   std::vector<ImuSample> samples_;
 };

@@ -1,0 +1,171 @@
+#include "core/inertial/camera_imu.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/rigid3.h"
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Errors of a turn as a share of it: scale factors, axes that are not square.
+constexpr double kShareOfTurn = 0.005;
+
+// The mean chi^2 follows about the last ten turns. Of a single turn with more
+// than the limit nothing is learnt, as the images may have erred. Their
+// covariances are not exact, so that a contradiction has to be clear.
+constexpr double kShareOfNew = 0.1;
+constexpr double kMostOfOne = 30.0;
+constexpr double kContradiction = 5.0;
+
+// An axis that has the same value this often in a row, rad/s or more, has
+// reached the end of its range.
+constexpr size_t kSameInARow = 3;
+constexpr double kFastRate = 1.0;
+
+bool IsSaturated(const std::vector<ImuSample>& samples) {
+  for (int axis = 0; axis < 3; ++axis) {
+    size_t same = 1;
+    // The first and the last sample are interpolated.
+    for (size_t i = 2; i + 1 < samples.size(); ++i) {
+      const double rate = samples[i].gyro[axis];
+      same = rate == samples[i - 1].gyro[axis] ? same + 1 : 1;
+      if (same >= kSameInARow && std::abs(rate) >= kFastRate) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+CameraImu::CameraImu(const ImuSensor& sensor)
+    : noise_(sensor.calibration.noise.value_or(ImuNoise())),
+      cam_from_imu_(sensor.calibration.cam_from_imu.value()),
+      delay_s_(sensor.calibration.delay_s.value_or(0.0)) {
+  State sigmas;
+  sigmas << Eigen::Vector3d::Constant(kBiasSigma), kDelaySigma,
+      Eigen::Vector3d::Constant(kMountingSigma);
+  covariance_ = sigmas.cwiseAbs2().asDiagonal();
+}
+
+void CameraImu::Add(const std::vector<ImuSample>& samples) {
+  for (const ImuSample& sample : samples) {
+    if (!std::isfinite(sample.stamp) || !sample.gyro.allFinite() ||
+        !sample.accel.allFinite()) {
+      continue;
+    }
+    const std::vector<ImuSample>& before = buffer_.samples();
+    if (!before.empty() && !(sample.stamp > before.back().stamp)) continue;
+    buffer_.Add(sample);
+  }
+}
+
+void CameraImu::ForgetBefore(double stamp) {
+  constexpr double kMargin = 10.0 * kDelaySigma;
+  buffer_.ForgetBefore(stamp + delay() - kMargin);
+}
+
+Eigen::Quaterniond CameraImu::cam_from_imu_turn() const {
+  return Rigid3d::FromRotationVector(state_.tail<3>(), Eigen::Vector3d::Zero())
+             .rotation *
+         cam_from_imu_.rotation;
+}
+
+std::optional<PreintegratedMotion> CameraImu::Motion(double from,
+                                                     double to) const {
+  if (!(from < to)) return std::nullopt;
+  if (!buffer_.Covers(from + delay(), to + delay())) return std::nullopt;
+  const std::vector<ImuSample> samples =
+      buffer_.Between(from + delay(), to + delay());
+  if (IsSaturated(samples)) return std::nullopt;
+  ImuBiasVector bias = ImuBiasVector::Zero();
+  bias.head<3>() = state_.head<3>();
+  PreintegratedMotion motion = Preintegrate(samples, bias, noise_);
+  const Eigen::Quaterniond turn = cam_from_imu_turn();
+  const Eigen::Matrix3d R = turn.toRotationMatrix();
+  motion.start_from_end = turn * motion.start_from_end * turn.conjugate();
+  motion.v = R * motion.v;
+  motion.p = R * motion.p;
+  Eigen::Matrix<double, 9, 9> turned = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int i = 0; i < 9; i += 3) turned.block<3, 3>(i, i) = R;
+  motion.by_bias = turned * motion.by_bias;
+  motion.covariance.topLeftCorner<9, 9>() =
+      turned * motion.covariance.topLeftCorner<9, 9>() * turned.transpose();
+  return motion;
+}
+
+Eigen::Matrix<double, 3, 7> CameraImu::ByState(
+    double from, double to, const PreintegratedMotion& motion) const {
+  const std::vector<ImuSample> samples =
+      buffer_.Between(from + delay(), to + delay());
+  const Eigen::Matrix3d R = cam_from_imu_turn().toRotationMatrix();
+  const Eigen::Vector3d bias = state_.head<3>();
+  const Eigen::Matrix3d end_from_start =
+      motion.start_from_end.conjugate().toRotationMatrix();
+  Eigen::Matrix<double, 3, 7> by_state;
+  by_state.leftCols<3>() = motion.by_bias.topLeftCorner<3, 3>();
+  by_state.col(3) = R * (samples.back().gyro - bias) -
+                    end_from_start * R * (samples.front().gyro - bias);
+  by_state.rightCols<3>() = end_from_start - Eigen::Matrix3d::Identity();
+  return by_state;
+}
+
+std::optional<CameraTurn> CameraImu::Turn(double from, double to) const {
+  const std::optional<PreintegratedMotion> motion = Motion(from, to);
+  if (!motion.has_value()) return std::nullopt;
+  const Eigen::Matrix<double, 3, 7> by_state = ByState(from, to, *motion);
+  const double share =
+      kShareOfTurn * RotationVector(motion->start_from_end).norm();
+  return CameraTurn{motion->start_from_end.conjugate(),
+                    motion->covariance.topLeftCorner<3, 3>() +
+                        by_state * covariance_ * by_state.transpose() +
+                        share * share * Eigen::Matrix3d::Identity()};
+}
+
+std::optional<CameraRate> CameraImu::MeanRate(double from, double to) const {
+  const std::optional<CameraTurn> turn = Turn(from, to);
+  if (!turn.has_value()) return std::nullopt;
+  const double per_second = 1.0 / (to - from);
+  return CameraRate{-per_second * RotationVector(turn->cur_from_prev),
+                    per_second * per_second * turn->covariance};
+}
+
+void CameraImu::Learn(double from, double to, const CameraTurn& seen) {
+  const std::optional<PreintegratedMotion> motion = Motion(from, to);
+  const std::optional<CameraTurn> turn = Turn(from, to);
+  if (!motion.has_value() || !turn.has_value()) return;
+  // Turns of the start's axes to those of the end have the opposite sign.
+  const Eigen::Vector3d off =
+      -RotationVector(seen.cur_from_prev * turn->cur_from_prev.conjugate());
+  const Eigen::Matrix<double, 3, 7> by_state = ByState(from, to, *motion);
+  const Eigen::LLT<Eigen::Matrix3d> solver(turn->covariance + seen.covariance);
+  if (solver.info() != Eigen::Success) return;
+  const double chi2 = off.dot(solver.solve(off)) / 3.0;
+  contradiction_ += kShareOfNew * (std::min(chi2, kMostOfOne) - contradiction_);
+  ++learnt_;
+  if (chi2 > kMostOfOne) return;
+  // A bias walks from one turn that is learnt to the next.
+  if (learnt_until_ > 0.0) {
+    covariance_.topLeftCorner<3, 3>().diagonal().array() +=
+        noise_.gyro_walk * noise_.gyro_walk * (to - learnt_until_);
+  }
+  learnt_until_ = to;
+  const Eigen::Matrix<double, 7, 3> gain =
+      solver.solve(by_state * covariance_).transpose();
+  state_ += gain * off;
+  covariance_ -= (gain * by_state * covariance_).eval();
+  covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
+}
+
+std::string CameraImu::doubt() const {
+  if (contradiction_ <= kContradiction) return "";
+  return Format(
+      "the gyroscope contradicts the images: its turns are off by %.1f "
+      "standard deviations; check its mounting, its delay and its axes",
+      std::sqrt(contradiction_));
+}
+
+}  // namespace rgbd_pose

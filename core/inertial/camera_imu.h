@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/inertial/imu_buffer.h"
+#include "core/inertial/imu_calibration.h"
+#include "core/inertial/imu_sample.h"
+#include "core/inertial/preintegration.h"
+
+namespace rgbd_pose {
+
+// A turn of the camera. The covariance is that of omega (rad), a small rotation
+// about the current axes: R_true = Exp(omega) R.
+struct CameraTurn {
+  Eigen::Quaterniond cur_from_prev = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+// The angular velocity of the camera in its own axes, rad/s.
+struct CameraRate {
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+// A gyroscope, with an accelerometer, beside a camera. While the camera is
+// tracked, turns that the images show correct what is known of the gyroscope:
+// its bias, the delay of its clock and how it is mounted (a Kalman filter over
+// these seven numbers). They also show whether the sensor can be believed.
+class CameraImu {
+ public:
+  // Standard deviations of what a calibration says, before anything is learnt:
+  // the bias of a gyroscope, rad/s, of the delay, s, of the mounting, rad.
+  static constexpr double kBiasSigma = 0.02;
+  static constexpr double kDelaySigma = 0.01;
+  static constexpr double kMountingSigma = 0.05;
+
+  // The sensor must have a gyroscope whose mounting is known.
+  explicit CameraImu(const ImuSensor& sensor);
+
+  // Whether a sensor can be used: it has a gyroscope, its mounting is known.
+  static bool CanUse(const ImuSensor& sensor) {
+    return sensor.has_gyro && sensor.calibration.cam_from_imu.has_value();
+  }
+
+  // Adds samples with the stamps and axes of the sensor. One that is not finite
+  // or not later than the one before is left out.
+  void Add(const std::vector<ImuSample>& samples);
+
+  // Forgets what is not needed for motions from a time (s, the camera's clock)
+  // on.
+  void ForgetBefore(double stamp);
+
+  // The motion between two times of the camera's clock, in the axes of the
+  // camera at the position of the sensor, less the bias of the gyroscope; both
+  // biases are in the axes of the sensor. Nothing if samples are missing, or if
+  // the gyroscope turned faster than it can measure.
+  std::optional<PreintegratedMotion> Motion(double from, double to) const;
+
+  // The turn between two times, and the mean rate in the axes halfway. Nothing
+  // where Motion has nothing.
+  std::optional<CameraTurn> Turn(double from, double to) const;
+  std::optional<CameraRate> MeanRate(double from, double to) const;
+
+  // Learns from a turn between two times that images have shown.
+  void Learn(double from, double to, const CameraTurn& seen);
+
+  // Whether turns that were seen have confirmed the sensor: enough of them, and
+  // no contradiction. Why not, in a line, if they contradict it.
+  bool is_trusted() const { return learnt_ >= kMinLearnt && doubt().empty(); }
+  std::string doubt() const;
+
+  // Where the sensor is, in the axes of the camera, m.
+  const Eigen::Vector3d& position() const { return cam_from_imu_.translation; }
+
+  // What is known by now: the gyroscope's bias (rad/s), what the delay (s) and
+  // the mounting (a rotation vector in the camera's axes, rad) are more than
+  // the calibration says.
+  using State = Eigen::Matrix<double, 7, 1>;
+  using StateMatrix = Eigen::Matrix<double, 7, 7>;
+  const State& state() const { return state_; }
+  const StateMatrix& covariance() const { return covariance_; }
+
+ private:
+  static constexpr int kMinLearnt = 3;
+
+  // The derivatives of a turn, a rotation vector in the axes of its end, by the
+  // state.
+  Eigen::Matrix<double, 3, 7> ByState(double from, double to,
+                                      const PreintegratedMotion& motion) const;
+  Eigen::Quaterniond cam_from_imu_turn() const;
+  double delay() const { return delay_s_ + state_[3]; }
+
+  const ImuNoise noise_;
+  const Rigid3d cam_from_imu_;
+  const double delay_s_;
+  ImuBuffer buffer_;
+  State state_ = State::Zero();
+  StateMatrix covariance_;
+  double learnt_until_ = 0.0;   // s
+  int learnt_ = 0;              // number of turns
+  double contradiction_ = 1.0;  // mean chi^2 of a turn per degree of freedom
+};
+
+}  // namespace rgbd_pose

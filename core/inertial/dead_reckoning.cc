@@ -1,0 +1,181 @@
+#include "core/inertial/dead_reckoning.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/inertial/gravity_estimate.h"
+#include "core/inertial/preintegration.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kGravity = 9.81;  // m/s^2
+
+// What is kept of the path, and the least that is needed, s.
+constexpr double kWindow = 2.0;
+constexpr double kShortest = 0.3;
+constexpr size_t kFewestPoses = 6;
+
+// Gravity differs by this much from place to place, and an accelerometer's
+// scale adds to it, m/s^2.
+constexpr double kGravitySigma = 0.05;
+
+// Positions are not known better than this, m, whatever their scatter.
+constexpr double kLeastSigma = 3e-4;
+
+// Errors of neighbouring poses are alike, as those of their keyframe and of the
+// surfaces they see: positions count with a sigma so many times their scatter.
+constexpr double kAlike = 3.0;
+
+// What a step of the path adds up to: v and p of the sensor, less what starts
+// and gravity add, and their derivatives by the bias. In axes of the world.
+struct Sums {
+  double seconds = 0.0;
+  Vector3d v = Vector3d::Zero(), p = Vector3d::Zero();
+  Matrix3d v_by_bias = Matrix3d::Zero(), p_by_bias = Matrix3d::Zero();
+
+  void Add(const Matrix3d& world_from_cam, const PreintegratedMotion& step) {
+    const double dt = step.seconds;
+    p += dt * v + world_from_cam * step.p;
+    p_by_bias +=
+        dt * v_by_bias + world_from_cam * step.by_bias.block<3, 3>(6, 3);
+    v += world_from_cam * step.v;
+    v_by_bias += world_from_cam * step.by_bias.block<3, 3>(3, 3);
+    seconds += dt;
+  }
+};
+
+// The least squares problem over [p(0) v(0) g b], all in axes of the world but
+// the bias.
+using Start = Eigen::Matrix<double, 12, 1>;
+using StartMatrix = Eigen::Matrix<double, 12, 12>;
+struct Row {
+  Eigen::Matrix<double, 3, 12> by_start;
+  Vector3d value;
+};
+
+Row RowOf(const Sums& sums, const Vector3d& position) {
+  Row row;
+  const double t = sums.seconds;
+  row.by_start << Matrix3d::Identity(), t * Matrix3d::Identity(),
+      0.5 * t * t * Matrix3d::Identity(), sums.p_by_bias;
+  row.value = position - sums.p;
+  return row;
+}
+
+}  // namespace
+
+void DeadReckoning::Add(double stamp, const Rigid3d& world_from_cam) {
+  path_.push_back({stamp, world_from_cam});
+  while (stamp - path_.front().stamp > kWindow) path_.pop_front();
+}
+
+std::optional<double> DeadReckoning::needed_from() const {
+  if (path_.empty()) return std::nullopt;
+  return path_.front().stamp;
+}
+
+std::optional<DeadReckoning::Solution> DeadReckoning::Solve(
+    const CameraImu& imu) const {
+  // The part of the path for which there are samples.
+  std::vector<PreintegratedMotion> steps;
+  size_t first = path_.size() - 1;
+  for (; first > 0; --first) {
+    const std::optional<PreintegratedMotion> step =
+        imu.Motion(path_[first - 1].stamp, path_[first].stamp);
+    if (!step.has_value()) break;
+    steps.push_back(*step);
+  }
+  if (path_.size() - first < kFewestPoses ||
+      path_.back().stamp - path_[first].stamp < kShortest) {
+    return std::nullopt;
+  }
+  Sums sums;
+  std::vector<Row> rows;
+  for (size_t i = first; i < path_.size(); ++i) {
+    const Rigid3d& pose = path_[i].world_from_cam;
+    rows.push_back(RowOf(sums, pose * imu.position()));
+    if (i + 1 == path_.size()) break;
+    sums.Add(pose.rotation.toRotationMatrix(), steps[path_.size() - 2 - i]);
+  }
+  Start x = Start::Zero();
+  x.segment<3>(6) = -kGravity * sums.v.normalized();
+  double sigma = 1e-3;
+  StartMatrix covariance;
+  // The second round knows the scatter of the positions and where gravity is.
+  for (int round = 0; round < 2; ++round) {
+    StartMatrix H = StartMatrix::Zero();
+    Start g = Start::Zero();
+    const double weight = 1.0 / (sigma * sigma);
+    for (const Row& row : rows) {
+      H += weight * row.by_start.transpose() * row.by_start;
+      g += weight * row.by_start.transpose() * row.value;
+    }
+    const Vector3d down = x.segment<3>(6).normalized();
+    constexpr double kInformation = 1.0 / (kGravitySigma * kGravitySigma);
+    H.block<3, 3>(6, 6) += kInformation * down * down.transpose();
+    g.segment<3>(6) += kInformation * kGravity * down;
+    H.block<3, 3>(9, 9).diagonal().array() +=
+        1.0 / (kAccelBiasSigma * kAccelBiasSigma);
+    const Eigen::LDLT<StartMatrix> solver(H);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    x = solver.solve(g);
+    covariance = solver.solve(StartMatrix::Identity());
+    double sum = 0.0;
+    for (const Row& row : rows) {
+      sum += (row.value - row.by_start * x).squaredNorm();
+    }
+    sigma = kAlike *
+            std::max(kLeastSigma, std::sqrt(sum / (3.0 * rows.size() - 9.0)));
+  }
+  Eigen::Matrix<double, 9, 12> end = Eigen::Matrix<double, 9, 12>::Zero();
+  end.block<3, 3>(0, 3).setIdentity();
+  end.block<3, 3>(0, 6) = sums.seconds * Matrix3d::Identity();
+  end.block<3, 3>(0, 9) = sums.v_by_bias;
+  end.block<6, 6>(3, 6).setIdentity();
+  Solution solution;
+  solution.x = end * x;
+  solution.x.head<3>() += sums.v;
+  solution.covariance = end * covariance * end.transpose();
+  return solution;
+}
+
+std::optional<DeadReckoning::Motion> DeadReckoning::Predict(
+    const CameraImu& imu, double stamp) const {
+  if (path_.empty() || !(stamp > path_.back().stamp) ||
+      stamp - path_.back().stamp > kMaxBlind) {
+    return std::nullopt;
+  }
+  const Pose& last = path_.back();
+  const std::optional<PreintegratedMotion> step = imu.Motion(last.stamp, stamp);
+  const std::optional<CameraTurn> turn = imu.Turn(last.stamp, stamp);
+  if (!step.has_value() || !turn.has_value()) return std::nullopt;
+  const std::optional<Solution> solution = Solve(imu);
+  if (!solution.has_value()) return std::nullopt;
+  const double t = step->seconds;
+  const Matrix3d last_from_world =
+      last.world_from_cam.rotation.conjugate().toRotationMatrix();
+  // The new centre in the axes of the last pose, by [v g b].
+  Eigen::Matrix<double, 3, 9> by_x;
+  by_x << t * last_from_world, 0.5 * t * t * last_from_world,
+      step->by_bias.block<3, 3>(6, 3);
+  const Vector3d arm = imu.position();
+  const Vector3d center =
+      by_x * solution->x + step->p + arm - step->start_from_end * arm;
+  Motion motion;
+  motion.cur_from_last = Rigid3d(step->start_from_end, center).Inverse();
+  motion.covariance.topLeftCorner<3, 3>() = turn->covariance;
+  const Matrix3d by_gyro = step->by_bias.block<3, 3>(6, 0);
+  motion.covariance.bottomRightCorner<3, 3>() =
+      by_x * solution->covariance * by_x.transpose() +
+      step->covariance.block<3, 3>(6, 6) +
+      by_gyro * imu.covariance().topLeftCorner<3, 3>() * by_gyro.transpose();
+  return motion;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,138 @@
+#include "core/inertial/camera_imu.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/util/units.h"
+#include "tests/support/camera_with_imu.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Errors of turns that images show, rad.
+constexpr double kTurnSigma = 5e-4;
+
+CameraImu Taught(CameraWithImu* world, const ImuCalibration& calibration,
+                 double seconds = 10.0) {
+  CameraImu imu({calibration, true});
+  imu.Add(world->Samples(-0.2, seconds + 2.0));
+  world->Teach(0.0, seconds, kTurnSigma, &imu);
+  return imu;
+}
+
+double ErrorOf(const CameraTurn& turn, const CameraWithImu& world, double from,
+               double to) {
+  const Eigen::Quaterniond truth = world.WorldFromCam(to).rotation.conjugate() *
+                                   world.WorldFromCam(from).rotation;
+  return truth.angularDistance(turn.cur_from_prev);
+}
+
+TEST(CameraImuTest, TellsTheTurnsOfTheCamera) {
+  CameraWithImu world;
+  world.bias.setZero();
+  CameraImu imu({world.truth, true});
+  imu.Add(world.Samples(-0.2, 3.0));
+  for (double t = 0.0; t < 2.0; t += 0.1) {
+    const std::optional<CameraTurn> turn = imu.Turn(t, t + 0.1);
+    ASSERT_TRUE(turn.has_value());
+    EXPECT_LT(ErrorOf(*turn, world, t, t + 0.1), 1e-3);
+    const std::optional<CameraRate> rate = imu.MeanRate(t, t + 0.1);
+    ASSERT_TRUE(rate.has_value());
+    EXPECT_NEAR((rate->angular * 0.1).norm(),
+                RotationVector(turn->cur_from_prev).norm(), 1e-9);
+  }
+}
+
+// The bias of its gyroscope, a delay of 12 ms and 3 degrees of its mounting are
+// found, with no larger errors than the covariance tells.
+TEST(CameraImuTest, LearnsBiasDelayAndMounting) {
+  double chi2 = 0.0;
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    CameraWithImu world(seed);
+    const Eigen::Vector3d turned(0.03, -0.03, 0.03);  // 3 degrees
+    ImuCalibration wrong = world.truth;
+    wrong.delay_s = *world.truth.delay_s - 0.012;
+    const Eigen::Quaterniond true_from_wrong =
+        Rigid3d::FromRotationVector(turned, Eigen::Vector3d::Zero()).rotation;
+    wrong.cam_from_imu->rotation =
+        true_from_wrong.conjugate() * world.truth.cam_from_imu->rotation;
+    const CameraImu imu = Taught(&world, wrong);
+    EXPECT_TRUE(imu.is_trusted()) << imu.doubt();
+    CameraImu::State error = imu.state();
+    error.head<3>() -= world.bias.head<3>();
+    error[3] -= 0.012;
+    error.tail<3>() -= turned;
+    EXPECT_LT(error.head<3>().norm(), 0.003) << seed;
+    EXPECT_LT(std::abs(error[3]), 0.0005) << seed;
+    EXPECT_LT(error.tail<3>().norm(), 0.1 / kDegreesPerRadian) << seed;
+    chi2 += error.dot(imu.covariance().inverse() * error) / 7.0;
+  }
+  // The error of a pose is in two turns, with opposite signs, so that together
+  // they say more than the filter takes from them.
+  EXPECT_GT(chi2 / kSeeds, 0.05);
+  EXPECT_LT(chi2 / kSeeds, 1.0);
+}
+
+// A sensor that is frozen, or whose axes are swapped, is not believed.
+TEST(CameraImuTest, DoubtsASensorThatContradictsTheImages) {
+  for (const bool is_frozen : {false, true}) {
+    CameraWithImu world;
+    CameraImu imu({world.truth, true});
+    std::vector<ImuSample> samples = world.Samples(-0.2, 12.0);
+    for (ImuSample& sample : samples) {
+      if (is_frozen) {
+        sample.gyro = {0.1, 0.2, 0.3};
+      } else {
+        std::swap(sample.gyro.x(), sample.gyro.z());
+      }
+    }
+    imu.Add(samples);
+    world.Teach(0.0, 3.0, kTurnSigma, &imu);
+    EXPECT_FALSE(imu.is_trusted());
+    EXPECT_NE(imu.doubt().find("contradicts"), std::string::npos);
+  }
+}
+
+TEST(CameraImuTest, OneWrongPoseDoesNotRuinIt) {
+  CameraWithImu world;
+  CameraImu imu = Taught(&world, world.truth);
+  CameraTurn wrong;
+  wrong.covariance = kTurnSigma * kTurnSigma * Eigen::Matrix3d::Identity();
+  imu.Learn(10.0, 10.2, wrong);
+  EXPECT_TRUE(imu.is_trusted()) << imu.doubt();
+  EXPECT_LT(ErrorOf(*imu.Turn(11.0, 11.1), world, 11.0, 11.1), 2e-3);
+}
+
+TEST(CameraImuTest, SaysNothingWithoutSamplesOrBeyondItsRange) {
+  CameraWithImu world;
+  CameraImu imu({world.truth, true});
+  EXPECT_FALSE(imu.Turn(0.0, 0.1).has_value());
+  std::vector<ImuSample> samples = world.Samples(-0.2, 3.0);
+  for (ImuSample& sample : samples) {
+    sample.gyro = sample.gyro.cwiseMax(-2.5).cwiseMin(2.5);
+  }
+  imu.Add(samples);
+  EXPECT_FALSE(imu.Turn(2.9, 3.5).has_value());
+  int missing = 0;
+  for (double t = 0.0; t < 2.0; t += 0.1) {
+    const std::optional<CameraTurn> turn = imu.Turn(t, t + 0.1);
+    missing += !turn.has_value();
+    if (turn.has_value()) {
+      EXPECT_LT(ErrorOf(*turn, world, t, t + 0.1), 0.01) << t;
+    }
+  }
+  EXPECT_GT(missing, 5);
+  EXPECT_LT(missing, 20);
+}
+
+TEST(CameraImuTest, CannotUseASensorWithoutGyroscopeOrMounting) {
+  const CameraWithImu world;
+  EXPECT_TRUE(CameraImu::CanUse({world.truth, true}));
+  EXPECT_FALSE(CameraImu::CanUse({world.truth, false}));
+  EXPECT_FALSE(CameraImu::CanUse({ImuCalibration(), true}));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,98 @@
+#include "core/inertial/dead_reckoning.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/camera_with_imu.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kTurnSigma = 5e-4;   // rad
+constexpr double kShiftSigma = 1e-3;  // m
+
+// A camera at 30 Hz whose images have shown ten seconds, and nothing since.
+struct Blind {
+  explicit Blind(unsigned seed) : world(seed), imu({world.truth, true}) {
+    imu.Add(world.Samples(-0.2, 13.0));
+    world.Teach(0.0, 10.0, kTurnSigma, &imu);
+    for (int frame = 0; frame <= 300; ++frame) {
+      last = world.Seen(frame / 30.0, kTurnSigma, kShiftSigma);
+      path.Add(frame / 30.0, last);
+    }
+  }
+
+  std::optional<DeadReckoning::Motion> After(double seconds) const {
+    return path.Predict(imu, 10.0 + seconds);
+  }
+
+  // What a motion is off, [omega C] as in MotionEstimate. The last pose itself
+  // errs, which the covariance of a motion does not say.
+  MotionVector ErrorOf(const Rigid3d& cur_from_last, double seconds) const {
+    const Rigid3d truth =
+        world.WorldFromCam(10.0 + seconds).Inverse() * world.WorldFromCam(10.0);
+    MotionVector error;
+    error << RotationVector(truth.rotation *
+                            cur_from_last.rotation.conjugate()),
+        truth.Inverse().translation - cur_from_last.Inverse().translation;
+    return error;
+  }
+
+  CameraWithImu world;
+  CameraImu imu;
+  DeadReckoning path;
+  Rigid3d last;
+};
+
+TEST(DeadReckoningTest, GoesOnForTwoSeconds) {
+  const double limits[][2] = {{0.5, 0.006}, {1.0, 0.015}, {2.0, 0.04}};
+  for (const auto& [seconds, limit] : limits) {
+    double sum = 0.0, chi2 = 0.0;
+    constexpr int kSeeds = 20;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      const Blind blind(seed);
+      const auto motion = blind.After(seconds);
+      ASSERT_TRUE(motion.has_value());
+      const MotionVector error = blind.ErrorOf(motion->cur_from_last, seconds);
+      sum += error.tail<3>().squaredNorm();
+      const Eigen::Matrix3d position =
+          motion->covariance.bottomRightCorner<3, 3>();
+      chi2 += error.tail<3>().dot(position.inverse() * error.tail<3>()) / 3.0;
+      EXPECT_LT(error.head<3>().norm(), 0.01) << seed;
+    }
+    EXPECT_LT(std::sqrt(sum / kSeeds), limit) << seconds;
+    EXPECT_GT(chi2 / kSeeds, 0.05) << seconds;
+    EXPECT_LT(chi2 / kSeeds, 1.5) << seconds;
+  }
+}
+
+TEST(DeadReckoningTest, EndsAfterTwoSeconds) {
+  const Blind blind(1);
+  EXPECT_TRUE(blind.After(DeadReckoning::kMaxBlind).has_value());
+  EXPECT_FALSE(blind.After(DeadReckoning::kMaxBlind + 0.01).has_value());
+  EXPECT_FALSE(blind.After(0.0).has_value());
+}
+
+TEST(DeadReckoningTest, NeedsAPathWithSamples) {
+  const Blind blind(1);
+  DeadReckoning path;
+  EXPECT_FALSE(path.needed_from().has_value());
+  EXPECT_FALSE(path.Predict(blind.imu, 0.5).has_value());
+  for (int frame = 0; frame < 5; ++frame) {
+    path.Add(frame / 30.0, blind.world.WorldFromCam(frame / 30.0));
+  }
+  EXPECT_FALSE(path.Predict(blind.imu, 0.3).has_value());  // too short
+  EXPECT_EQ(path.needed_from(), 0.0);
+  for (int frame = 5; frame < 40; ++frame) {
+    path.Add(frame / 30.0, blind.world.WorldFromCam(frame / 30.0));
+  }
+  EXPECT_TRUE(path.Predict(blind.imu, 1.5).has_value());
+  EXPECT_FALSE(path.Predict(CameraImu({blind.world.truth, true}), 1.5)
+                   .has_value());  // no samples
+  path.Clear();
+  EXPECT_FALSE(path.Predict(blind.imu, 1.5).has_value());
+}
+
+}  // namespace
+}  // namespace rgbd_pose
