@@ -16,7 +16,10 @@ void SequenceRun::Add(const StreamedFrame& next) {
                         next.frame.timestamp);
   }
   if (slam_ != nullptr) slam_->AddImu(next.imu);
-  if (meter_.has_value()) meter_->Add(next.imu);
+  if (meter_.has_value()) {
+    meter_->Add(next.imu);
+    odometry_->AddImu(next.imu);
+  }
   Add(next.frame, guess.has_value() ? &*guess : nullptr);
   results_.frames.back().decode_ms = next.decode_ms;
 }

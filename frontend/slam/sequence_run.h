@@ -67,7 +67,9 @@ class SequenceRun {
   SequenceRun(const OdometrySettings& settings, const RgbdCamera& camera,
               const RunInputs& inputs = {})
       : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {
-    if (inputs.imu.has_value()) meter_.emplace(*inputs.imu);
+    if (!inputs.imu.has_value()) return;
+    meter_.emplace(*inputs.imu);
+    odometry_->UseImu(*inputs.imu);
   }
 
   // With a Slam: frames and debug images have the poses known at the time; the

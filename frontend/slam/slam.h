@@ -80,12 +80,17 @@ class Slam {
 
   // Says what is known of an inertial sensor beside the camera; call it before
   // the first frame.
-  void UseImu(const ImuSensor& sensor) { meter_.emplace(sensor); }
+  void UseImu(const ImuSensor& sensor) {
+    meter_.emplace(sensor);
+    odometry_.UseImu(sensor);
+  }
 
   // Adds samples of that sensor (RgbdFrame::imu) in the order of their stamps.
   // Without UseImu they have no effect.
   void AddImu(const std::vector<ImuSample>& samples) {
-    if (meter_.has_value()) meter_->Add(samples);
+    if (!meter_.has_value()) return;
+    meter_->Add(samples);
+    odometry_.AddImu(samples);
   }
 
   // See Odometry::Track.

@@ -111,6 +111,11 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   }
   state_.timing_covariance = TimingCovariance(
       frame, {{kSigmaAngular, 0.0, 0.0}, {kSigmaLinear, 0.0, 0.0}});
+  state_.turn.reset();
+  if (inertial_.has_value() && state_.interval > 0.0) {
+    state_.turn =
+        inertial_->Turn(frame.timestamp - state_.interval, frame.timestamp);
+  }
   {
     const StageTimer timer(&result.track_ms);
     if (!state_.carried.empty()) {
@@ -127,7 +132,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
     } else if (state_.is_lost && options_.on_lost == LostPolicy::kStop) {
       result.reason = "stopped after an earlier frame was lost";
     } else if (!Follow(frame, prediction, &result) &&
-               !Relocalise(frame, &result)) {
+               !Relocalise(frame, &result) && !GoOnBlindly(frame, &result)) {
       HandleLost(frame, prediction, &result);
     }
   }
@@ -147,8 +152,14 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                            result.cur_from_reference);
     }
   }
+  if (inertial_.has_value() && result.status == TrackingStatus::kOk) {
+    inertial_->Found(result);
+    state_.seen = {state_.reference->id, state_.cur_from_ref,
+                   state_.covariance};
+  }
   state_.last.reset();
-  if (result.status != TrackingStatus::kLost && !result.is_reference) {
+  if (result.status != TrackingStatus::kLost && !result.is_reference &&
+      result.source != TrackingSource::kInertial) {
     state_.last = {result.index,
                    state_.segment,
                    result.world_from_cam,
@@ -164,7 +175,8 @@ void Odometry::JudgeInflation(TrackedFrame* result) {
   state_.is_doubtful = attempts_.kept().is_ambiguous;
   // A failed attempt says nothing of the camera.
   if (result->status == TrackingStatus::kLost || result->reference < 0 ||
-      result->source == TrackingSource::kDirect) {
+      result->source == TrackingSource::kDirect ||
+      result->source == TrackingSource::kInertial) {
     return;
   }
   const double inflation = attempts_.kept().covariance_factor;

@@ -10,6 +10,7 @@
 #include "frontend/frame/stamp_jitter.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/carried_region.h"
+#include "frontend/tracking/inertial_tracking.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/shutter_tracking.h"
 #include "frontend/tracking/tracked_frame.h"
@@ -91,6 +92,26 @@ class Odometry {
   // May be called from any thread while this object lives.
   void Prepare(const PreparedFrame& frame) const { tracker_->Prepare(frame); }
 
+  // Says what is known of an inertial sensor beside the camera; call it before
+  // the first frame. It helps to track if it has a gyroscope whose mounting is
+  // known, and as long as images confirm it. Where they show nothing, the pose
+  // goes on by it for up to two seconds, as `degraded`.
+  void UseImu(const ImuSensor& sensor) {
+    if (CameraImu::CanUse(sensor)) inertial_.emplace(sensor);
+  }
+
+  // Adds samples of that sensor, with its stamps and axes, in order. Those up
+  // to the last row of a frame are needed before the frame is tracked. Without
+  // UseImu they have no effect.
+  void AddImu(const std::vector<ImuSample>& samples) {
+    if (inertial_.has_value()) inertial_->Add(samples);
+  }
+
+  // What is known of that sensor by now; null if it cannot be used.
+  const CameraImu* imu() const {
+    return inertial_.has_value() ? &inertial_->imu() : nullptr;
+  }
+
   // Inserts a frame from elsewhere (a map, an earlier visit) as the latest
   // keyframe. If the view returns to it, frames are tracked against it, and a
   // lost frame is searched for there first. Its id: the index of the frame if
@@ -164,6 +185,9 @@ class Odometry {
   // do not determine it.
   std::optional<Rigid3d> AlignToLast(
       const PreparedFrame& frame, const std::optional<Prediction>& prediction);
+  // The motion since the last frame as it is expected without looking: at
+  // constant velocity, turned by the gyroscope if there is one.
+  Rigid3d Expected() const;
   // Tracks a frame against state_.reference. Returns it as tracked, or null if
   // lost. The refinement is left to Follow.
   const PreparedFrame* Look(const PreparedFrame& frame,
@@ -179,6 +203,9 @@ class Odometry {
   // Returns false and changes nothing without a suitable last frame.
   bool MakeLastReference(TrackedFrame* result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
+  // Moves a pose that images do not show by the inertial sensor. Returns false,
+  // with unchanged state, if that does not know the way.
+  bool GoOnBlindly(const Frame& frame, TrackedFrame* result);
   void HandleLost(const PreparedFrame& frame,
                   const std::optional<Prediction>& prediction,
                   TrackedFrame* result);
@@ -224,6 +251,7 @@ class Odometry {
     MotionMatrix covariance = MotionMatrix::Zero();  // of cur_from_ref
     Rigid3d cur_from_prev;                           // between the last two
     std::optional<Rigid3d> aligned;  // the same by coarse images
+    std::optional<CameraTurn> turn;  // the same by the gyroscope
     Effort effort = Effort::kQuick;
     bool has_few_features = false;
     // The last frame, to become a keyframe, if it was tracked and is none.
@@ -235,6 +263,14 @@ class Odometry {
     CarriedRegion carried;     // what the camera sees of its carrier
     // The 90 % quantile of TrackingResult::covariance_factor.
     double usual_inflation = 4.0;
+
+    // The last frame that images have found without doubt: its motion since
+    // the reference of that time.
+    struct Seen {
+      int reference = -1;
+      Rigid3d cur_from_ref;
+      MotionMatrix covariance = MotionMatrix::Zero();
+    } seen;
 
     // Whether and where it was lost.
     bool is_lost = false;
@@ -253,6 +289,7 @@ class Odometry {
   Relocaliser relocaliser_;
   TrackingAttempts attempts_;  // at the last frame
   State state_;
+  std::optional<InertialTracking> inertial_;  // nothing: no such sensor
   int num_frames_ = 0;
 };
 

@@ -63,8 +63,9 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   if (!place.has_value()) return false;
   OdometryKeyframe* keyframe = keyframes_.Find(place->keyframe);
   TrackingGuess guess = GuessOf(place->cur_from_keyframe);
-  const VelocityPrior velocity = state_.shutter_tracking.velocity()->Prior(
+  VelocityPrior velocity = state_.shutter_tracking.velocity()->Prior(
       std::nullopt, state_.interval, frame.color_shutter.offset);
+  if (inertial_.has_value()) velocity.rate = inertial_->RateDuring(frame);
   if (state_.has_shutter && state_.interval > 0.0) guess.velocity = &velocity;
   if (!attempts_.Try(frame, *keyframe, guess, result) ||
       result->status != TrackingStatus::kOk) {
@@ -82,6 +83,40 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   state_.cur_from_prev = Rigid3d();
   result->relocalised = true;
   Accept(frame.WithTwist(state_.twist), result);
+  return true;
+}
+
+bool Odometry::GoOnBlindly(const Frame& frame, TrackedFrame* result) {
+  if (!inertial_.has_value() || state_.is_lost ||
+      state_.seen.reference != state_.reference->id) {
+    return false;
+  }
+  const std::optional<DeadReckoning::Motion> since_seen =
+      inertial_->Since(frame.timestamp);
+  if (!since_seen.has_value()) return false;
+  const Rigid3d& cur_from_seen = since_seen->cur_from_last;
+  const Rigid3d cur_from_ref = cur_from_seen * state_.seen.cur_from_ref;
+  state_.cur_from_prev = cur_from_ref * state_.cur_from_ref.Inverse();
+  state_.cur_from_ref = cur_from_ref;
+  state_.covariance =
+      ComposedCovariance(cur_from_seen, since_seen->covariance,
+                         state_.seen.cur_from_ref, state_.seen.covariance);
+  // The next frame with an image goes on with this velocity.
+  state_.shutter_tracking.HandleLost();
+  if (state_.has_shutter && state_.interval > 0.0) {
+    state_.shutter_tracking.velocity()->Add(
+        TwistOf(state_.cur_from_prev, state_.interval), frame.timestamp,
+        frame.color_shutter.offset);
+  }
+  result->status = TrackingStatus::kDegraded;
+  result->reason = "no image: inertial sensor only";
+  result->source = TrackingSource::kInertial;
+  result->reference = state_.reference->id;
+  result->cur_from_reference = cur_from_ref;
+  result->matches = result->inliers = 0;
+  result->sigma = 0.0;
+  result->edges = {
+      {result->reference, result->index, cur_from_ref, state_.covariance}};
   return true;
 }
 

@@ -1,4 +1,5 @@
 #include <optional>
+#include <utility>
 
 #include "core/util/stage_timer.h"
 #include "frontend/tracking/odometry.h"
@@ -84,10 +85,14 @@ std::optional<Rigid3d> Odometry::AlignToLast(
   if (last == nullptr) return std::nullopt;
   PreparedFrame seen = frame;
   seen.twist = last->frame.twist;
-  return tracker_->AlignCoarsely(last->frame, seen,
-                                 prediction.has_value()
-                                     ? prediction->cur_from_prev
-                                     : state_.cur_from_prev);
+  return tracker_->AlignCoarsely(
+      last->frame, seen,
+      prediction.has_value() ? prediction->cur_from_prev : Expected());
+}
+
+Rigid3d Odometry::Expected() const {
+  if (!state_.turn.has_value()) return state_.cur_from_prev;
+  return Rigid3d(state_.turn->cur_from_prev, state_.cur_from_prev.translation);
 }
 
 // Tracks from where coarse images say that the camera is. Where they do not say
@@ -97,7 +102,9 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                                     const std::optional<Prediction>& prediction,
                                     TrackedFrame* result) {
   Rigid3d first = state_.cur_from_ref;
-  Rigid3d second = state_.cur_from_prev * state_.cur_from_ref;
+  Rigid3d second = Expected() * state_.cur_from_ref;
+  // What a gyroscope has measured is no assumption.
+  if (state_.turn.has_value()) std::swap(first, second);
   std::optional<Rigid3d> aligned;
   if (state_.aligned.has_value()) {
     aligned = *state_.aligned * state_.cur_from_ref;
@@ -157,11 +164,13 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
       twist = TwistOf(*state_.aligned, state_.interval);
     }
   }
+  std::optional<CameraRate> rate;
+  if (inertial_.has_value()) rate = inertial_->RateDuring(measured);
   std::optional<Rigid3d> prev_from_ref;
   if (!state_.is_lost) prev_from_ref = state_.cur_from_ref;
-  return state_.shutter_tracking.Follow(measured, state_.interval,
-                                        prev_from_ref, twist, state_.reference,
-                                        attempts_.kept(), track, track_again);
+  return state_.shutter_tracking.Follow(
+      measured, state_.interval, prev_from_ref, twist, rate, state_.reference,
+      attempts_.kept(), track, track_again);
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {

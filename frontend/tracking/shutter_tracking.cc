@@ -47,7 +47,8 @@ void ShutterTracking::HandleLost() {
 const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,
-    const std::optional<Twist>& first_guess, OdometryKeyframe* reference,
+    const std::optional<Twist>& first_guess,
+    const std::optional<CameraRate>& rate, OdometryKeyframe* reference,
     const TrackingResult& tracked, const Track& track,
     const TrackAgain& track_again) {
   found_ = Found();
@@ -67,7 +68,12 @@ const PreparedFrame* ShutterTracking::Follow(
     MoveReference(*first_guess, MotionMatrix::Zero(), interval, reference);
   }
   found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
-  VelocityPrior prior = PriorOf(*reference, prev_from_ref, interval, middle);
+  if (rate.has_value()) {
+    found_.frame->twist = found_.frame->twist.value_or(Twist());
+    found_.frame->twist->angular = rate->angular;
+  }
+  VelocityPrior prior =
+      PriorOf(*reference, prev_from_ref, rate, interval, middle);
   if (!track(*found_.frame, &prior)) return nullptr;
   const auto look = [&] {
     if (tracked.velocity.has_value()) {
@@ -85,7 +91,7 @@ const PreparedFrame* ShutterTracking::Follow(
                        interval, reference)) {
       break;
     }
-    prior = PriorOf(*reference, prev_from_ref, interval, middle);
+    prior = PriorOf(*reference, prev_from_ref, rate, interval, middle);
     const Rigid3d found = tracked.estimate.cur_from_prev;
     if (!track_again(*found_.frame, prior, found)) return nullptr;
     look();
@@ -135,9 +141,11 @@ void ShutterTracking::Restart(const Frame& frame,
 
 VelocityPrior ShutterTracking::PriorOf(
     const OdometryKeyframe& reference,
-    const std::optional<Rigid3d>& prev_from_ref, double interval,
+    const std::optional<Rigid3d>& prev_from_ref,
+    const std::optional<CameraRate>& rate, double interval,
     double middle) const {
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
+  prior.rate = rate;
   prior.reference_covariance = reference.velocity_covariance;
   const bool is_second = early_.has_value() && !early_->velocity.has_value();
   if (is_second) prior.reference_covariance *= kShareOfFirst;

@@ -27,12 +27,13 @@ enum class TrackingSource {
   kFeatures,  // matches of features
   kDirect,    // pixels alone
   kBoth,      // pixels, starting from the motion of the features
+  kInertial,  // images show nothing: by the inertial sensor since the last one
 };
 
 // The name printed by programs.
 inline const char* ToString(TrackingSource source) {
-  constexpr const char* kNames[] = {"", "features", "direct",
-                                    "features+direct"};
+  constexpr const char* kNames[] = {"", "features", "direct", "features+direct",
+                                    "inertial"};
   return kNames[static_cast<int>(source)];
 }
 

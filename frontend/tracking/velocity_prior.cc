@@ -48,15 +48,23 @@ std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
   return TwistOf(cur_from_prev, interval);
 }
 
+double VelocityPrior::SigmaOfRate() const {
+  if (!rate.has_value()) return sigma_angular;
+  return std::min(sigma_angular, std::sqrt(rate->covariance.trace() / 3.0));
+}
+
 // The estimated velocity feeds back into its own prior. With an extrapolation
 // of the last velocities (3/2 of the mean velocity minus 1/2 of the last one,
 // which suits the acceleration of a hand) it oscillates until frames are lost.
 Twist VelocityPrior::Mean(const Rigid3d& cur_from_ref,
                           const Twist& twist) const {
   const std::optional<Twist> between = Between(cur_from_ref, twist);
-  if (!between.has_value()) return prev_twist.value_or(Twist());
-  if (!prev_twist.has_value()) return *between;
-  return kShareOfBetween * *between + (1.0 - kShareOfBetween) * *prev_twist;
+  Twist mean = prev_twist.value_or(between.value_or(Twist()));
+  if (between.has_value() && prev_twist.has_value()) {
+    mean = kShareOfBetween * *between + (1.0 - kShareOfBetween) * *prev_twist;
+  }
+  if (rate.has_value()) mean.angular = rate->angular;
+  return mean;
 }
 
 MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,

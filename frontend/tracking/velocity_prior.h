@@ -5,6 +5,7 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"
+#include "core/inertial/camera_imu.h"
 
 namespace rgbd_pose {
 
@@ -25,6 +26,14 @@ struct VelocityPrior {
   // Standard deviations of the velocity once the motion is known.
   double sigma_angular = 0.0;  // rad/s
   double sigma_linear = 0.0;   // m/s
+
+  // The angular velocity while the rows are exposed as a gyroscope has measured
+  // it; nothing: unknown.
+  std::optional<CameraRate> rate = std::nullopt;
+
+  // The standard deviation of the angular velocity once the motion is known,
+  // rad/s.
+  double SigmaOfRate() const;
 
   // Covariance of the velocity (angular, then linear) according to which the
   // points of the reference have been moved.
