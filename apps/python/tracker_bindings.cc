@@ -108,6 +108,32 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   return frame;
 }
 
+std::vector<ImuSample> ImuSamplesFrom(const py::object& array) {
+  const NumberArray rows(array, "samples", {NumberArray::kAny, 7});
+  std::vector<ImuSample> samples(rows.size());
+  for (size_t i = 0; i < rows.size(); ++i) {
+    samples[i].stamp = rows(i, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      samples[i].gyro[axis] = rows(i, 1 + axis);
+      samples[i].accel[axis] = rows(i, 4 + axis);
+    }
+  }
+  return samples;
+}
+
+void SharedRun::UseImu(const ImuSensor& sensor) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!run_.frames().empty()) {
+    throw InputError("use_imu: call it before the first frame");
+  }
+  run_.UseImu(sensor);
+}
+
+void SharedRun::AddImu(const std::vector<ImuSample>& samples) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  run_.AddImu(samples);
+}
+
 std::string SharedRun::OpenView(const std::string& title,
                                 const ViewSettings& settings) {
   const std::lock_guard<std::mutex> lock(mutex_);

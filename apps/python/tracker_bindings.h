@@ -34,6 +34,10 @@ std::string FrameInWords(const TrackedFrame& frame);
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
 
+// Samples of an inertial sensor from an array (N, 7), see Recording.imu. Throws
+// InputError for another shape.
+std::vector<ImuSample> ImuSamplesFrom(const pybind11::object& array);
+
 // A run for several threads. Calls wait for each other and therefore must not
 // hold the GIL. Keeps the results of all frames.
 class SharedRun {
@@ -50,6 +54,11 @@ class SharedRun {
     const std::lock_guard<std::mutex> lock(mutex_);
     return run_.Path();
   }
+
+  // See Odometry::UseImu. Throws InputError after the first frame.
+  void UseImu(const ImuSensor& sensor);
+  // See Odometry::AddImu.
+  void AddImu(const std::vector<ImuSample>& samples);
 
   // Opens a page that shows the run, in place of an earlier one, and returns
   // its address. Throws InputError for invalid settings.
@@ -79,7 +88,8 @@ struct LivePage {
 };
 
 // Defines what Odometry and Slam share: the constructor Type(Settings,
-// RgbdCamera), track, trajectory, save_trajectory, view. Type: a SharedRun.
+// RgbdCamera), track, use_imu, add_imu, trajectory, save_trajectory, view.
+// Type: a SharedRun.
 template <typename Type, typename Settings>
 pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
                                    const std::string& help,
@@ -150,6 +160,35 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
   type.def("track", track, track_help, py::arg("image"), py::arg("depth"),
            py::arg("timestamp") = py::none(),
            py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0);
+  type.def(
+      "use_imu",
+      [](Type* self, const py::object& cam_from_imu, double delay,
+         bool has_gyro) {
+        ImuSensor sensor;
+        sensor.calibration.cam_from_imu =
+            RigidFromArray(cam_from_imu, "cam_from_imu");
+        sensor.calibration.delay_s = delay;
+        sensor.has_gyro = has_gyro;
+        const ReleasedGil no_gil;
+        self->UseImu(sensor);
+      },
+      "Says what is known of an inertial sensor beside the camera, before the "
+      "first frame:\ncam_from_imu (4, 4), m, turns its axes into those of the "
+      "camera; delay: of its stamps\nafter the camera's, s. A gyroscope helps "
+      "to track as long as images confirm it.",
+      py::arg("cam_from_imu"), py::arg("delay") = 0.0,
+      py::arg("has_gyro") = true);
+  type.def(
+      "add_imu",
+      [](Type* self, const py::object& samples) {
+        const std::vector<ImuSample> all = ImuSamplesFrom(samples);
+        const ReleasedGil no_gil;
+        self->AddImu(all);
+      },
+      "Adds samples of that sensor, (N, 7) as Recording.imu() has them, in "
+      "order. Those up\nto the last row of a frame are needed before it is "
+      "tracked.",
+      py::arg("samples"));
   type.def_property_readonly("trajectory", get, trajectory_help);
   type.def(
       "view", view,

@@ -5,7 +5,7 @@
 #include "apps/results/evaluation_report.h"
 #include "apps/results/evaluation_summary.h"
 #include "apps/results/frame_tables.h"
-#include "apps/results/gravity_output.h"
+#include "apps/results/inertial_output.h"
 #include "apps/results/run_summary.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -175,6 +175,10 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   if (results.gravity.has_value()) {
     metrics["gravity"] = GravityToJson(*results.gravity);
     text += FormatGravity(metrics["gravity"]);
+  }
+  if (results.imu.has_value()) {
+    metrics["gyroscope"] = GyroscopeToJson(*results.imu);
+    text += FormatGyroscope(metrics["gyroscope"]);
   }
   const double jitter_ms = jitters_ms_.empty() ? 0.0 : Median(jitters_ms_);
   if (jitter_ms > kNoticedJitterMs) {

@@ -15,11 +15,9 @@ namespace {
 constexpr double kShareOfTurn = 0.005;
 
 // The mean chi^2 follows about the last ten turns. Of a single turn with more
-// than the limit nothing is learnt, as the images may have erred. Their
-// covariances are not exact, so that a contradiction has to be clear.
+// than the limit nothing is learnt, as the images may have erred.
 constexpr double kShareOfNew = 0.1;
 constexpr double kMostOfOne = 30.0;
-constexpr double kContradiction = 5.0;
 
 // An axis that has the same value this often in a row, rad/s or more, has
 // reached the end of its range.
@@ -125,12 +123,19 @@ std::optional<CameraTurn> CameraImu::Turn(double from, double to) const {
                         share * share * Eigen::Matrix3d::Identity()};
 }
 
-std::optional<CameraRate> CameraImu::MeanRate(double from, double to) const {
+std::optional<CameraRate> CameraImu::Rate(double from, double to) const {
+  const double middle = 0.5 * (from + to);
   const std::optional<CameraTurn> turn = Turn(from, to);
-  if (!turn.has_value()) return std::nullopt;
+  const std::optional<CameraTurn> first = Turn(from, middle);
+  const std::optional<CameraTurn> second = Turn(middle, to);
+  if (!turn || !first || !second) return std::nullopt;
   const double per_second = 1.0 / (to - from);
+  const Eigen::Vector3d change = RotationVector(second->cur_from_prev) -
+                                 RotationVector(first->cur_from_prev);
+  // The halves have twice the rate per turn, and are half an interval apart.
   return CameraRate{-per_second * RotationVector(turn->cur_from_prev),
-                    per_second * per_second * turn->covariance};
+                    per_second * per_second * turn->covariance,
+                    4.0 * per_second * per_second * change.norm()};
 }
 
 void CameraImu::Learn(double from, double to, const CameraTurn& seen) {
@@ -161,11 +166,18 @@ void CameraImu::Learn(double from, double to, const CameraTurn& seen) {
 }
 
 std::string CameraImu::doubt() const {
-  if (contradiction_ <= kContradiction) return "";
-  return Format(
-      "the gyroscope contradicts the images: its turns are off by %.1f "
-      "standard deviations; check its mounting, its delay and its axes",
-      std::sqrt(contradiction_));
+  if (contradiction_ > kMostContradiction) {
+    return Format(
+        "it contradicts the images: its turns are off by %.1f standard "
+        "deviations; check its mounting, delay and axes",
+        std::sqrt(contradiction_));
+  }
+  if (learnt_ < kMinLearnt) return "images have shown too few turns";
+  return "";
+}
+
+ImuCalibration CameraImu::Calibration() const {
+  return {Rigid3d(cam_from_imu_turn(), position()), delay(), noise_};
 }
 
 }  // namespace rgbd_pose

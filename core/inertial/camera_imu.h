@@ -20,10 +20,12 @@ struct CameraTurn {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-// The angular velocity of the camera in its own axes, rad/s.
+// The mean angular velocity of the camera over an interval, in its own axes,
+// rad/s, and by how much per second it changes meanwhile, rad/s^2.
 struct CameraRate {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double acceleration = 0.0;
 };
 
 // A gyroscope, with an accelerometer, beside a camera. While the camera is
@@ -60,18 +62,27 @@ class CameraImu {
   // the gyroscope turned faster than it can measure.
   std::optional<PreintegratedMotion> Motion(double from, double to) const;
 
-  // The turn between two times, and the mean rate in the axes halfway. Nothing
+  // The turn between two times, and the rate, in the axes halfway. Nothing
   // where Motion has nothing.
   std::optional<CameraTurn> Turn(double from, double to) const;
-  std::optional<CameraRate> MeanRate(double from, double to) const;
+  std::optional<CameraRate> Rate(double from, double to) const;
 
   // Learns from a turn between two times that images have shown.
   void Learn(double from, double to, const CameraTurn& seen);
 
   // Whether turns that were seen have confirmed the sensor: enough of them, and
-  // no contradiction. Why not, in a line, if they contradict it.
-  bool is_trusted() const { return learnt_ >= kMinLearnt && doubt().empty(); }
+  // no contradiction.
+  bool is_trusted() const {
+    return learnt_ >= kMinLearnt && contradiction_ <= kMostContradiction;
+  }
+  // Why it is not trusted, in a line; empty if it is.
   std::string doubt() const;
+
+  // The number of turns that were seen.
+  int num_learnt() const { return learnt_; }
+
+  // The calibration with what was learnt of delay and mounting.
+  ImuCalibration Calibration() const;
 
   // Where the sensor is, in the axes of the camera, m.
   const Eigen::Vector3d& position() const { return cam_from_imu_.translation; }
@@ -86,6 +97,9 @@ class CameraImu {
 
  private:
   static constexpr int kMinLearnt = 3;
+  // The images' covariances are not exact, so that a contradiction has to be
+  // clear.
+  static constexpr double kMostContradiction = 5.0;
 
   // The derivatives of a turn, a rotation vector in the axes of its end, by the
   // state.
@@ -94,9 +108,9 @@ class CameraImu {
   Eigen::Quaterniond cam_from_imu_turn() const;
   double delay() const { return delay_s_ + state_[3]; }
 
-  const ImuNoise noise_;
-  const Rigid3d cam_from_imu_;
-  const double delay_s_;
+  ImuNoise noise_;
+  Rigid3d cam_from_imu_;
+  double delay_s_;
   ImuBuffer buffer_;
   State state_ = State::Zero();
   StateMatrix covariance_;

@@ -47,7 +47,7 @@ class ImuBuffer {
   };
   Interval Find(double from, double to) const;
 
-  const double max_gap_;
+  double max_gap_;
   std::vector<ImuSample> samples_;
 };
 

@@ -15,11 +15,7 @@ void SequenceRun::Add(const StreamedFrame& next) {
     guess = MotionAlong(*inputs_.motion_guess, frames.back().timestamp,
                         next.frame.timestamp);
   }
-  if (slam_ != nullptr) slam_->AddImu(next.imu);
-  if (meter_.has_value()) {
-    meter_->Add(next.imu);
-    odometry_->AddImu(next.imu);
-  }
+  AddImu(next.imu);
   Add(next.frame, guess.has_value() ? &*guess : nullptr);
   results_.frames.back().decode_ms = next.decode_ms;
 }
@@ -37,6 +33,24 @@ void SequenceRun::Add(const PreparedFrame& frame,
   }
 }
 
+void SequenceRun::UseImu(const ImuSensor& sensor) {
+  if (slam_ != nullptr) {
+    slam_->UseImu(sensor);
+    return;
+  }
+  meter_.emplace(sensor);
+  odometry_->UseImu(sensor);
+}
+
+void SequenceRun::AddImu(const std::vector<ImuSample>& samples) {
+  if (slam_ != nullptr) {
+    slam_->AddImu(samples);
+  } else if (meter_.has_value()) {
+    meter_->Add(samples);
+    odometry_->AddImu(samples);
+  }
+}
+
 void SequenceRun::DegradeLast(const std::string& reason) {
   const auto degrade = [&](TrackedFrame* tracked) {
     if (tracked->status != TrackingStatus::kOk) return;
@@ -51,6 +65,7 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   if (slam_ != nullptr) FinishSlam();
   results_.trajectory = Path();
   results_.gravity = Gravity();
+  if (odometry().imu() != nullptr) results_.imu = *odometry().imu();
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);

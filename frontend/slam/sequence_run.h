@@ -11,6 +11,7 @@
 #include "core/estimation/motion_estimate.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
+#include "core/inertial/camera_imu.h"
 #include "core/inertial/gravity_estimate.h"
 #include "core/inertial/mean_force.h"
 #include "frontend/settings/sequence.h"
@@ -54,6 +55,9 @@ struct RunResults {
   // In the world of the trajectory; nothing without an inertial sensor.
   std::optional<GravityEstimate> gravity;
 
+  // What was learnt of an inertial sensor; nothing if none can be used.
+  std::optional<CameraImu> imu;
+
   double TrackedShare() const {
     if (frames.empty()) return 0.0;
     return static_cast<double>(trajectory.size()) / frames.size();
@@ -67,9 +71,7 @@ class SequenceRun {
   SequenceRun(const OdometrySettings& settings, const RgbdCamera& camera,
               const RunInputs& inputs = {})
       : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {
-    if (!inputs.imu.has_value()) return;
-    meter_.emplace(*inputs.imu);
-    odometry_->UseImu(*inputs.imu);
+    if (inputs.imu.has_value()) UseImu(*inputs.imu);
   }
 
   // With a Slam: frames and debug images have the poses known at the time; the
@@ -78,13 +80,18 @@ class SequenceRun {
               const RgbdCamera& camera, const RunInputs& inputs = {})
       : inputs_(inputs),
         slam_(std::make_unique<Slam>(odometry, settings, camera)) {
-    if (inputs.imu.has_value()) slam_->UseImu(*inputs.imu);
+    if (inputs.imu.has_value()) UseImu(*inputs.imu);
   }
 
+  // Adds the next frame of a stream and the inertial samples with it.
   void Add(const StreamedFrame& next);
 
   // Tracks any frame, as Odometry::Track does. The guess may be null.
   void Add(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess);
+
+  // See Odometry::UseImu and AddImu. RunInputs::imu is used without a call.
+  void UseImu(const ImuSensor& sensor);
+  void AddImu(const std::vector<ImuSample>& samples);
 
   // Marks the last frame as degraded unless it is lost: what was found of it is
   // not to be relied on.

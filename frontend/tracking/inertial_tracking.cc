@@ -29,7 +29,7 @@ std::optional<CameraRate> InertialTracking::RateDuring(
   const double middle = frame.timestamp + frame.color_shutter.offset;
   const double half =
       0.5 * std::max(kShortestExposure, std::abs(frame.color_shutter.readout));
-  return imu_.MeanRate(middle - half, middle + half);
+  return imu_.Rate(middle - half, middle + half);
 }
 
 std::optional<DeadReckoning::Motion> InertialTracking::Since(

@@ -90,8 +90,11 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                     kShareOfDepth * late * late);
   const double per_second = 1.0 / (kSigmaOfChange * prior.interval);
   const double scale = half_square * per_second;
-  return IndependentErrors(scale * prior.sigma_angular,
-                           scale * prior.sigma_linear);
+  double turn = scale * prior.sigma_angular;
+  if (prior.rate.has_value()) {
+    turn = std::max(turn, half_square * prior.rate->acceleration);
+  }
+  return IndependentErrors(turn, scale * prior.sigma_linear);
 }
 
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,

@@ -58,7 +58,8 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
                                      double sigma_angular, double sigma_linear);
 
 // Returns the covariance that accelerations within a frame add to the motion.
-// Their size follows from the prior's change of velocity between frames.
+// Their size follows from the prior's change of velocity between frames, and
+// from what a gyroscope says of this one.
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                             const VelocityPrior& prior);
 

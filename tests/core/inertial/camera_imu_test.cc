@@ -37,10 +37,26 @@ TEST(CameraImuTest, TellsTheTurnsOfTheCamera) {
     const std::optional<CameraTurn> turn = imu.Turn(t, t + 0.1);
     ASSERT_TRUE(turn.has_value());
     EXPECT_LT(ErrorOf(*turn, world, t, t + 0.1), 1e-3);
-    const std::optional<CameraRate> rate = imu.MeanRate(t, t + 0.1);
+    const std::optional<CameraRate> rate = imu.Rate(t, t + 0.1);
     ASSERT_TRUE(rate.has_value());
     EXPECT_NEAR((rate->angular * 0.1).norm(),
                 RotationVector(turn->cur_from_prev).norm(), 1e-9);
+  }
+}
+
+// By how much the rate changes from one half to the other is what the path has.
+TEST(CameraImuTest, TellsHowTheRateChanges) {
+  CameraWithImu world;
+  world.bias.setZero();
+  CameraImu imu({world.truth, true});
+  imu.Add(world.Samples(-0.2, 3.0));
+  constexpr double kHalf = 0.02;
+  for (double t = 0.1; t < 2.0; t += 0.1) {
+    const std::optional<CameraRate> rate = imu.Rate(t - kHalf, t + kHalf);
+    ASSERT_TRUE(rate.has_value());
+    const Eigen::Vector3d change = world.hand.Sample(t + kHalf / 2.0).gyro -
+                                   world.hand.Sample(t - kHalf / 2.0).gyro;
+    EXPECT_NEAR(rate->acceleration, change.norm() / kHalf, 0.6) << t;
   }
 }
 

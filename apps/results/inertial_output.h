@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/inertial/camera_imu.h"
 #include "core/inertial/gravity_estimate.h"
 
 namespace rgbd_pose {
@@ -10,7 +11,11 @@ namespace rgbd_pose {
 // The object `gravity` of metrics.json.
 nlohmann::json GravityToJson(const GravityEstimate& gravity);
 
-// Describes that object in one line, for printing.
+// The object `gyroscope` of metrics.json.
+nlohmann::json GyroscopeToJson(const CameraImu& imu);
+
+// Describe these objects in one line each, for printing.
 std::string FormatGravity(const nlohmann::json& gravity);
+std::string FormatGyroscope(const nlohmann::json& gyroscope);
 
 }  // namespace rgbd_pose

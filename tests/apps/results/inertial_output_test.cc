@@ -1,4 +1,4 @@
-#include "apps/results/gravity_output.h"
+#include "apps/results/inertial_output.h"
 
 #include <gtest/gtest.h>
 
@@ -26,6 +26,24 @@ TEST(GravityOutputTest, SaysWhyItIsNotKnown) {
   EXPECT_EQ(json.count("up"), 0);
   EXPECT_EQ(FormatGravity(json),
             "gravity     not determined: the camera fell\n");
+}
+
+TEST(GyroscopeOutputTest, SaysWhatWasLearnt) {
+  ImuSensor sensor;
+  sensor.calibration.cam_from_imu = Rigid3d();
+  sensor.calibration.delay_s = 0.012;
+  const nlohmann::json json = GyroscopeToJson(CameraImu(sensor));
+  EXPECT_NEAR(json.at("delay_ms").get<double>(), 12.0, 1e-9);
+  EXPECT_NEAR(json.at("bias_sigma")[1].get<double>(), CameraImu::kBiasSigma,
+              1e-12);
+  EXPECT_EQ(json.at("turns"), 0);
+  EXPECT_EQ(FormatGyroscope(json),
+            "gyroscope   not used: images have shown too few turns\n");
+  nlohmann::json sure = json;
+  sure["doubt"] = "";
+  EXPECT_EQ(FormatGyroscope(sure),
+            "gyroscope   delay 12.0 ms, sigma 10; mounting off by 0.00 "
+            "degrees, sigma 2.9\n");
 }
 
 }  // namespace

@@ -1,0 +1,155 @@
+#include "frontend/tracking/inertial_tracking.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "tests/support/shutter_sequence.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A hand with a rolling shutter and an inertial sensor, which sees nothing for
+// half a second.
+constexpr int kFrames = 80;
+constexpr int kBlindFrom = 50, kBlindTo = 65;
+
+struct HandWithImu {
+  HandWithImu()
+      : sequence("handheld", RollingShutters(1.0), kFrames),
+        samples(sequence.dataset.SimulateImu(Options())) {
+    sensor.calibration.cam_from_imu = Options().cam_from_imu;
+  }
+
+  static SyntheticImuOptions Options() {
+    SyntheticImuOptions options;
+    options.cam_from_imu =
+        Rigid3d::FromRotationVector({0.5, -1.0, 0.3}, {0.03, -0.02, 0.01});
+    options.bias << 0.01, -0.01, 0.01, 0.1, -0.1, 0.1;
+    return options;
+  }
+
+  static const HandWithImu& Get() {
+    static const HandWithImu hand;
+    return hand;
+  }
+
+  ShutterSequence sequence;
+  std::vector<ImuSample> samples;
+  ImuSensor sensor;
+};
+
+bool IsBlind(int frame) { return frame >= kBlindFrom && frame < kBlindTo; }
+
+Frame Covered(const Frame& frame) {
+  Frame covered = Black(frame);
+  covered.depth = cv::Mat(frame.depth.size(), CV_32FC1, cv::Scalar(0));
+  return covered;
+}
+
+enum class Sensor { kNone, kGood, kSwapped };
+
+struct Run {
+  std::vector<TrackedFrame> frames;
+  std::vector<std::optional<Twist>> twists;
+};
+
+Run TrackHand(Sensor sensor, bool is_covered) {
+  const HandWithImu& hand = HandWithImu::Get();
+  Odometry odometry = OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
+  if (sensor != Sensor::kNone) odometry.UseImu(hand.sensor);
+  std::vector<ImuSample> samples = hand.samples;
+  if (sensor == Sensor::kSwapped) {
+    for (ImuSample& sample : samples) {
+      std::swap(sample.gyro.x(), sample.gyro.z());
+    }
+  }
+  odometry.AddImu(samples);
+  Run run;
+  for (int i = 0; i < kFrames; ++i) {
+    const Frame& frame = hand.sequence.frames[i];
+    const bool is_blind = is_covered && IsBlind(i);
+    run.frames.push_back(odometry.Track(is_blind ? Covered(frame) : frame));
+    run.twists.push_back(odometry.last_twist());
+  }
+  return run;
+}
+
+// Of the motion from one frame to another, m.
+double ShiftError(const Run& run, int from, int to) {
+  const Rigid3d motion =
+      run.frames[to].world_from_cam.Inverse() * run.frames[from].world_from_cam;
+  const Rigid3d truth = HandWithImu::Get().sequence.Motion(from, to);
+  return (motion.Inverse().translation - truth.Inverse().translation).norm();
+}
+
+TEST(InertialTrackingTest, GoesOnWhereImagesShowNothing) {
+  const Run run = TrackHand(Sensor::kGood, true);
+  for (int i = kBlindFrom; i < kBlindTo; ++i) {
+    const TrackedFrame& frame = run.frames[i];
+    EXPECT_EQ(frame.status, TrackingStatus::kDegraded) << i;
+    EXPECT_EQ(frame.source, TrackingSource::kInertial) << i;
+    EXPECT_EQ(frame.reason, "no image: inertial sensor only");
+    ASSERT_EQ(frame.edges.size(), 1) << i;
+    const Eigen::Matrix3d covariance =
+        frame.edges[0].covariance.bottomRightCorner<3, 3>();
+    EXPECT_LT(ShiftError(run, kBlindFrom - 1, i),
+              4.0 * std::sqrt(covariance.trace()))
+        << i;
+  }
+  EXPECT_LT(ShiftError(run, kBlindFrom - 1, kBlindTo - 1), 0.015);
+  // It is found again from there, in the same world.
+  for (int i = kBlindTo; i < kFrames; ++i) {
+    EXPECT_EQ(run.frames[i].status, TrackingStatus::kOk) << i;
+    EXPECT_EQ(run.frames[i].segment, 0) << i;
+    EXPECT_LT(ShiftError(run, kBlindFrom - 1, i), 0.015) << i;
+  }
+}
+
+TEST(InertialTrackingTest, WithoutASensorTheCameraIsLostThere) {
+  const Run run = TrackHand(Sensor::kNone, true);
+  EXPECT_EQ(run.frames[kBlindFrom + 1].status, TrackingStatus::kLost);
+}
+
+TEST(InertialTrackingTest, KnowsTheAngularVelocityOfEachFrame) {
+  const HandWithImu& hand = HandWithImu::Get();
+  const auto mean_error = [&](const Run& run) {
+    double sum = 0.0;
+    constexpr int kFirst = 30;
+    for (int i = kFirst; i + 1 < kFrames; ++i) {
+      // The rate of the path over the two intervals around the frame.
+      const Twist truth = TwistOf(hand.sequence.Motion(i - 1, i + 1),
+                                  hand.sequence.frames[i + 1].timestamp -
+                                      hand.sequence.frames[i - 1].timestamp);
+      sum += (run.twists[i].value().angular - truth.angular).norm();
+    }
+    return sum / (kFrames - 1 - kFirst);
+  };
+  const double without = mean_error(TrackHand(Sensor::kNone, false));
+  EXPECT_LT(mean_error(TrackHand(Sensor::kGood, false)), 0.7 * without);
+}
+
+// The path of a sensor with swapped axes is that without it, to the last bit.
+TEST(InertialTrackingTest, ASensorThatContradictsTheImagesIsLeftOut) {
+  const Run with = TrackHand(Sensor::kSwapped, false);
+  const Run without = TrackHand(Sensor::kNone, false);
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(with.frames[i].world_from_cam.translation,
+              without.frames[i].world_from_cam.translation)
+        << i;
+  }
+}
+
+// Without a mounting nothing is known of the camera, and nothing is used.
+TEST(InertialTrackingTest, ASensorWithoutMountingHasNoEffect) {
+  const HandWithImu& hand = HandWithImu::Get();
+  Odometry odometry = OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
+  odometry.UseImu(ImuSensor());
+  odometry.AddImu(hand.samples);
+  EXPECT_EQ(odometry.imu(), nullptr);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
