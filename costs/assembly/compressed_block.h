@@ -39,6 +39,9 @@ struct CompressedSums {
 
 namespace compressed {
 
+// Dense sums suit small problems.
+inline constexpr int kMostParameters = 18;
+
 // Limits for H scaled to a diagonal of ones. Cholesky pivots below the first
 // may be pure rounding; eigenvalues below the second are.
 inline constexpr double kSafePivot = 1e-6;
@@ -71,7 +74,7 @@ bool FactorRegular(const double* hessian, const double* gradient, double* r,
 // g. In the null space of H, g has no component and the rows are 0, so
 // ceres::Covariance sees the rank. Takes H[K][K], g[K], r[K] and J[K][K]. One
 // template for all K <= kMost: the solver takes long to compile.
-template <int kMost = 12>
+template <int kMost = kMostParameters>
 void FactorSingular(int K, const double* hessian, const double* gradient,
                     double* r, double* J) {
   using Matrix =
@@ -111,7 +114,7 @@ inline void TakeExcess(int K, double excess, const double* hessian, double cost,
   constexpr double kSameGradient = 1e-6;  // relative, in units of D
   double left = excess, off = 0.0, whole = 0.0, square = 0.0;
   for (int k = 0; k < K; ++k) square += r[k] * r[k];
-  double trimmed[12];
+  double trimmed[kMostParameters];
   for (int i = K - 1; i >= 0; --i) {
     const double rest = std::max(0.0, r[i] * r[i] - std::max(0.0, left));
     trimmed[i] = std::copysign(std::sqrt(rest), r[i]);
@@ -145,6 +148,7 @@ inline void TakeExcess(int K, double excess, const double* hessian, double cost,
 template <int K>
 bool FactorSums(const CompressedSums<K>& sums, double* residuals,
                 double* jacobian) {
+  static_assert(K >= 1 && K <= compressed::kMostParameters);
   if (!std::isfinite(sums.cost)) return false;
   Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
   r.setZero();
@@ -178,8 +182,6 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
 // between calls and is as thread-safe as its evaluator.
 template <int K, typename Evaluator>
 class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
-  static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
-
  public:
   // Takes a copy of the evaluator.
   explicit CompressedBlock(Evaluator evaluator)

@@ -12,12 +12,13 @@
 //
 // A residual type defines its sizes and evaluates itself:
 //
-//   static constexpr int kRows, kParameters;            (kParameters <= 12)
+//   static constexpr int kRows, kParameters;            (kParameters <= 18)
 //   bool operator()(const double* x, double* r, double* J) const;
 //
 // with x[kParameters], r[kRows] and J[kRows * kParameters], row by row; J is
 // null if only residuals are needed. Returning false or a non-finite number
-// rejects the step, as in Ceres.
+// rejects the step, as in Ceres. Where sums are taken without CompressedBlock,
+// x may be of any type that holds the state.
 
 namespace rgbd_pose {
 
@@ -35,7 +36,9 @@ class CompressedResiduals {
                       const ceres::LossFunction* loss)
       : residuals_(residuals), loss_(loss) {}
 
-  bool operator()(const double* x, bool with_derivatives,
+  // Adds to the sums; `x` is passed on to the residuals.
+  template <typename State>
+  bool operator()(const State& x, bool with_derivatives,
                   CompressedSums<K>* sums) const {
     constexpr int kRows = Residual::kRows;
     Eigen::Matrix<double, kRows, 1> r;
@@ -50,7 +53,11 @@ class CompressedResiduals {
       if (!with_derivatives) continue;
       const Eigen::Matrix<double, K, 1> g = J.transpose() * r;
       sums->gradient += rho[1] * g;
-      sums->hessian.noalias() += rho[1] * (J.transpose() * J);
+      // By columns: for large K the whole product takes Eigen twice as long.
+      for (int k = 0; k < K; ++k) {
+        const Eigen::Matrix<double, kRows, 1> weighted = rho[1] * J.col(k);
+        sums->hessian.col(k).noalias() += J.transpose().lazyProduct(weighted);
+      }
       if (rho[2] > 0.0) sums->hessian += 2.0 * rho[2] * (g * g.transpose());
     }
     return true;

@@ -2,6 +2,7 @@
 // number of matches. A separate program, since it replaces global operator new.
 
 #include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
 #include <ceres/problem.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -16,8 +17,11 @@
 
 #include "core/estimation/estimator.h"
 #include "costs/cost_factory.h"
+#include "costs/factors/shutter_pair.h"
+#include "costs/matches/bidirectional_point.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
+#include "tests/support/shutter_scene.h"
 
 namespace {
 
@@ -120,6 +124,28 @@ TEST(AllocationTest, TheCompressedBlockAllocatesNothing) {
   const double* parameters[] = {x.data()};
   EXPECT_EQ(AllocationsOf([&] { block->Evaluate(parameters, r, jacobians); }),
             0);
+}
+
+TEST(AllocationTest, ThePairOfRollingShuttersAllocatesNothing) {
+  using Type = BidirectionalPoint;
+  // Without time between rows velocities are not determined.
+  for (const double seconds : {0.02, 0.0}) {
+    ShutterScene<Type> scene(4);
+    std::vector<ShutterMatchFactor<Type>> matches;
+    for (int i = 0; i < 100; ++i) matches.push_back(scene.Match(seconds));
+    const ShutterPairFactor<Type> pair(
+        matches, std::make_unique<ceres::CauchyLoss>(2.0));
+    const std::vector<std::vector<double>> x = scene.Blocks();
+    const double* parameters[] = {x[0].data(), x[1].data(), x[2].data(),
+                                  x[3].data()};
+    double r[19], J[4][19 * 7];
+    double* jacobians[] = {J[0], J[1], J[2], J[3]};
+    EXPECT_EQ(AllocationsOf([&] {
+                EXPECT_TRUE(pair.Evaluate(parameters, r, nullptr));
+                EXPECT_TRUE(pair.Evaluate(parameters, r, jacobians));
+              }),
+              0);
+  }
 }
 
 // Ceres' allocations for a problem of one block do not depend on the number of

@@ -77,6 +77,7 @@ check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
 says '^back at the start within 0\.[0-9]+ mm$' own_cost
 check "$examples/own_problem" '^solved, a quarter is 90\.00 degrees$'
 check "$examples/five_frames" '^solved, the last frame is 0\.[0-9]+ mm off, sigma 0\.'
+check "$examples/wheel_scale" '^the scale is 1\.0[34][0-9]*, sigma 0\.00[0-9]+; in truth it is 1\.0400$'
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
 check "$examples/map_loop" '^[1-9][0-9]* keyframes, .* within 0\.[0-9]+ mm$'

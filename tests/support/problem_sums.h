@@ -1,0 +1,58 @@
+#pragma once
+
+#include <ceres/crs_matrix.h>
+#include <ceres/problem.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+namespace rgbd_pose {
+
+// What a Gauss-Newton step over all blocks of a problem depends on.
+struct ProblemSums {
+  double cost = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+};
+
+// The sums at the problem's state, in the tangents of its blocks.
+inline ProblemSums SumsOf(ceres::Problem* problem) {
+  ProblemSums sums;
+  std::vector<double> gradient;
+  ceres::CRSMatrix crs;
+  EXPECT_TRUE(problem->Evaluate({}, &sums.cost, nullptr, &gradient, &crs));
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, crs.num_cols);
+  for (int row = 0; row < crs.num_rows; ++row) {
+    for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
+      J(row, crs.cols[k]) = crs.values[k];
+    }
+  }
+  sums.gradient = Eigen::Map<Eigen::VectorXd>(
+      gradient.data(), static_cast<Eigen::Index>(gradient.size()));
+  sums.hessian = J.transpose() * J;
+  return sums;
+}
+
+// The largest difference of two problems' sums, NaN if there is one. It is
+// relative to what the columns of the Jacobian allow: a gradient is a sum that
+// cancels.
+inline double SumsError(const ProblemSums& a, const ProblemSums& b) {
+  double error = 0.0;
+  const auto compare = [&error](double x, double y, double unit) {
+    const double off = x == y ? 0.0 : std::abs(x - y) / unit;
+    if (!(off <= error)) error = off;
+  };
+  compare(a.cost, b.cost, b.cost);
+  const Eigen::VectorXd size = b.hessian.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    compare(a.gradient[i], b.gradient[i], size[i] * std::sqrt(2.0 * b.cost));
+    for (Eigen::Index k = 0; k < size.size(); ++k) {
+      compare(a.hessian(i, k), b.hessian(i, k), size[i] * size[k]);
+    }
+  }
+  return error;
+}
+
+}  // namespace rgbd_pose
