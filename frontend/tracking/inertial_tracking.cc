@@ -10,6 +10,10 @@ namespace {
 // hides a bias less the longer it takes, but a path drifts.
 constexpr double kLearningInterval = 0.2;
 
+// Over longer intervals nothing is learnt, and samples are not kept for longer
+// while no frame is found, s.
+constexpr double kLongestInterval = 5.0;
+
 // Turns that images show are not known better than this, rad.
 constexpr double kLeastTurnSigma = 3e-4;
 
@@ -38,7 +42,11 @@ std::optional<DeadReckoning::Motion> InertialTracking::Since(
   return path_.Predict(imu_, stamp);
 }
 
-void InertialTracking::Found(const TrackedFrame& frame) {
+void InertialTracking::Learn(const TrackedFrame& frame) {
+  if (frame.status != TrackingStatus::kOk) {
+    imu_.ForgetBefore(frame.timestamp - kLongestInterval);
+    return;
+  }
   if (frame.segment != segment_ || frame.relocalised) {
     path_.Clear();
     start_.reset();
@@ -50,7 +58,7 @@ void InertialTracking::Found(const TrackedFrame& frame) {
   if (!frame.edges.empty()) {
     now.covariance += frame.edges.front().covariance.topLeftCorner<3, 3>();
   }
-  if (!start_.has_value()) {
+  if (!start_.has_value() || now.stamp - start_->stamp > kLongestInterval) {
     start_ = now;
   } else if (now.stamp - start_->stamp >= kLearningInterval) {
     const Eigen::Quaterniond now_from_start =

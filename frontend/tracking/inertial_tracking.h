@@ -32,11 +32,11 @@ class InertialTracking {
   // The angular velocity while the rows of a frame are exposed, as above.
   std::optional<CameraRate> RateDuring(const Frame& frame) const;
 
-  // The motion to a time from the last frame given to Found, as above.
+  // The motion to a time since the last frame that was found so, as above.
   std::optional<DeadReckoning::Motion> Since(double stamp) const;
 
-  // Learns from a frame that images have found without doubt.
-  void Found(const TrackedFrame& frame);
+  // Learns from a frame if images have found it without doubt.
+  void Learn(const TrackedFrame& frame);
 
   const CameraImu& imu() const { return imu_; }
 

@@ -152,8 +152,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                            result.cur_from_reference);
     }
   }
-  if (inertial_.has_value() && result.status == TrackingStatus::kOk) {
-    inertial_->Found(result);
+  if (inertial_.has_value()) inertial_->Learn(result);
+  if (result.status == TrackingStatus::kOk) {
     state_.seen = {state_.reference->id, state_.cur_from_ref,
                    state_.covariance};
   }

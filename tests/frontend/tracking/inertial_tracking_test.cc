@@ -51,12 +51,12 @@ Frame Covered(const Frame& frame) {
 
 enum class Sensor { kNone, kGood, kSwapped };
 
-struct Run {
+struct TrackedHand {
   std::vector<TrackedFrame> frames;
   std::vector<std::optional<Twist>> twists;
 };
 
-Run TrackHand(Sensor sensor, bool is_covered) {
+TrackedHand TrackHand(Sensor sensor, bool is_covered) {
   const HandWithImu& hand = HandWithImu::Get();
   Odometry odometry = OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
   if (sensor != Sensor::kNone) odometry.UseImu(hand.sensor);
@@ -67,7 +67,7 @@ Run TrackHand(Sensor sensor, bool is_covered) {
     }
   }
   odometry.AddImu(samples);
-  Run run;
+  TrackedHand run;
   for (int i = 0; i < kFrames; ++i) {
     const Frame& frame = hand.sequence.frames[i];
     const bool is_blind = is_covered && IsBlind(i);
@@ -78,7 +78,7 @@ Run TrackHand(Sensor sensor, bool is_covered) {
 }
 
 // Of the motion from one frame to another, m.
-double ShiftError(const Run& run, int from, int to) {
+double ShiftError(const TrackedHand& run, int from, int to) {
   const Rigid3d motion =
       run.frames[to].world_from_cam.Inverse() * run.frames[from].world_from_cam;
   const Rigid3d truth = HandWithImu::Get().sequence.Motion(from, to);
@@ -86,7 +86,7 @@ double ShiftError(const Run& run, int from, int to) {
 }
 
 TEST(InertialTrackingTest, GoesOnWhereImagesShowNothing) {
-  const Run run = TrackHand(Sensor::kGood, true);
+  const TrackedHand run = TrackHand(Sensor::kGood, true);
   for (int i = kBlindFrom; i < kBlindTo; ++i) {
     const TrackedFrame& frame = run.frames[i];
     EXPECT_EQ(frame.status, TrackingStatus::kDegraded) << i;
@@ -109,13 +109,13 @@ TEST(InertialTrackingTest, GoesOnWhereImagesShowNothing) {
 }
 
 TEST(InertialTrackingTest, WithoutASensorTheCameraIsLostThere) {
-  const Run run = TrackHand(Sensor::kNone, true);
+  const TrackedHand run = TrackHand(Sensor::kNone, true);
   EXPECT_EQ(run.frames[kBlindFrom + 1].status, TrackingStatus::kLost);
 }
 
 TEST(InertialTrackingTest, KnowsTheAngularVelocityOfEachFrame) {
   const HandWithImu& hand = HandWithImu::Get();
-  const auto mean_error = [&](const Run& run) {
+  const auto mean_error = [&](const TrackedHand& run) {
     double sum = 0.0;
     constexpr int kFirst = 30;
     for (int i = kFirst; i + 1 < kFrames; ++i) {
@@ -133,8 +133,8 @@ TEST(InertialTrackingTest, KnowsTheAngularVelocityOfEachFrame) {
 
 // The path of a sensor with swapped axes is that without it, to the last bit.
 TEST(InertialTrackingTest, ASensorThatContradictsTheImagesIsLeftOut) {
-  const Run with = TrackHand(Sensor::kSwapped, false);
-  const Run without = TrackHand(Sensor::kNone, false);
+  const TrackedHand with = TrackHand(Sensor::kSwapped, false);
+  const TrackedHand without = TrackHand(Sensor::kNone, false);
   for (int i = 0; i < kFrames; ++i) {
     EXPECT_EQ(with.frames[i].world_from_cam.translation,
               without.frames[i].world_from_cam.translation)
