@@ -13,19 +13,21 @@
 
 namespace rgbd_pose {
 
-// A turn of the camera. The covariance is that of omega (rad), a small rotation
-// about the current axes: R_true = Exp(omega) R.
+// A turn of the camera.
 struct CameraTurn {
+  // Turns the axes before into those after it.
   Eigen::Quaterniond cur_from_prev = Eigen::Quaterniond::Identity();
+
+  // Of omega (rad), a small rotation about the current axes:
+  // R_true = Exp(omega) R.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-// The mean angular velocity of the camera over an interval, in its own axes,
-// rad/s, and by how much per second it changes meanwhile, rad/s^2.
+// How fast the camera turns in an interval, in its own axes.
 struct CameraRate {
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double acceleration = 0.0;
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();     // on average, rad/s
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of `angular`
+  double acceleration = 0.0;  // by how much the rate changes, rad/s^2
 };
 
 // A gyroscope, with an accelerometer, beside a camera. While the camera is

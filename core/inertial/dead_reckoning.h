@@ -34,10 +34,10 @@ class DeadReckoning {
   // The stamp from which on samples are needed, s; nothing without a path.
   std::optional<double> needed_from() const;
 
-  // A motion since the last pose, with its covariance as in MotionEstimate.
+  // A motion since the last pose.
   struct Motion {
-    Rigid3d cur_from_last;
-    MotionMatrix covariance = MotionMatrix::Zero();
+    Rigid3d cur_from_last;                           // as predicted
+    MotionMatrix covariance = MotionMatrix::Zero();  // as in MotionEstimate
   };
 
   // The motion from the last pose to a later time. Nothing if the path is too

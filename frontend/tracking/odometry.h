@@ -264,12 +264,11 @@ class Odometry {
     // The 90 % quantile of TrackingResult::covariance_factor.
     double usual_inflation = 4.0;
 
-    // The last frame that images have found without doubt: its motion since
-    // the reference of that time.
+    // The last frame that images have found without doubt.
     struct Seen {
-      int reference = -1;
-      Rigid3d cur_from_ref;
-      MotionMatrix covariance = MotionMatrix::Zero();
+      int reference = -1;                              // at that time
+      Rigid3d cur_from_ref;                            // its motion since then
+      MotionMatrix covariance = MotionMatrix::Zero();  // of cur_from_ref
     } seen;
 
     // Whether and where it was lost.

@@ -282,6 +282,13 @@ class Odometry:
         motion_guess: Optional[ArrayLike] = None,
         depth_delay: float = 0.0,
     ) -> TrackedFrame: ...
+    def use_imu(
+        self,
+        cam_from_imu: ArrayLike,
+        delay: float = 0.0,
+        has_gyro: bool = True,
+    ) -> None: ...
+    def add_imu(self, samples: ArrayLike) -> None: ...
     @property
     def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
     def save_trajectory(self, path: _Path) -> None: ...
@@ -389,6 +396,13 @@ class Slam:
         motion_guess: Optional[ArrayLike] = None,
         depth_delay: float = 0.0,
     ) -> SlamFrame: ...
+    def use_imu(
+        self,
+        cam_from_imu: ArrayLike,
+        delay: float = 0.0,
+        has_gyro: bool = True,
+    ) -> None: ...
+    def add_imu(self, samples: ArrayLike) -> None: ...
     def finish(self) -> None: ...
     @property
     def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
