@@ -107,9 +107,9 @@ class ShutterReferenceTest : public ::testing::Test {
       ++num_corrected_;
       return find(frame, &velocity);
     };
-    const PreparedFrame* const found =
-        shutter.Follow(FrameAt(kInterval, std::nullopt), kInterval, Rigid3d(),
-                       guess, &reference_, tracked, find, find_again);
+    const PreparedFrame* const found = shutter.Follow(
+        FrameAt(kInterval, std::nullopt), kInterval, Rigid3d(), guess,
+        std::nullopt, &reference_, tracked, find, find_again);
     ASSERT_NE(found, nullptr);
     found_ = *found;
   }
