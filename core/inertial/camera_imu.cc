@@ -44,7 +44,9 @@ CameraImu::CameraImu(const ImuSensor& sensor)
       cam_from_imu_(sensor.calibration.cam_from_imu.value()),
       delay_s_(sensor.calibration.delay_s.value_or(0.0)) {
   State sigmas;
-  sigmas << Eigen::Vector3d::Constant(kBiasSigma), kDelaySigma,
+  const bool has_delay = sensor.calibration.delay_s.has_value();
+  sigmas << Eigen::Vector3d::Constant(kBiasSigma),
+      has_delay ? kDelaySigma : kUnknownDelaySigma,
       Eigen::Vector3d::Constant(kMountingSigma);
   covariance_ = sigmas.cwiseAbs2().asDiagonal();
 }
@@ -62,7 +64,7 @@ void CameraImu::Add(const std::vector<ImuSample>& samples) {
 }
 
 void CameraImu::ForgetBefore(double stamp) {
-  constexpr double kMargin = 10.0 * kDelaySigma;
+  constexpr double kMargin = 10.0 * kUnknownDelaySigma;
   buffer_.ForgetBefore(stamp + delay() - kMargin);
 }
 
@@ -95,7 +97,7 @@ std::optional<PreintegratedMotion> CameraImu::Motion(double from,
   return motion;
 }
 
-Eigen::Matrix<double, 3, 7> CameraImu::ByState(
+CameraImu::ByState CameraImu::StateDerivative(
     double from, double to, const PreintegratedMotion& motion) const {
   const std::vector<ImuSample> samples =
       buffer_.Between(from + delay(), to + delay());
@@ -103,7 +105,7 @@ Eigen::Matrix<double, 3, 7> CameraImu::ByState(
   const Eigen::Vector3d bias = state_.head<3>();
   const Eigen::Matrix3d end_from_start =
       motion.start_from_end.conjugate().toRotationMatrix();
-  Eigen::Matrix<double, 3, 7> by_state;
+  ByState by_state;
   by_state.leftCols<3>() = motion.by_bias.topLeftCorner<3, 3>();
   by_state.col(3) = R * (samples.back().gyro - bias) -
                     end_from_start * R * (samples.front().gyro - bias);
@@ -111,16 +113,23 @@ Eigen::Matrix<double, 3, 7> CameraImu::ByState(
   return by_state;
 }
 
+CameraTurn CameraImu::TurnOf(const PreintegratedMotion& motion,
+                             const ByState& by_state) const {
+  const double share =
+      kShareOfTurn * RotationVector(motion.start_from_end).norm();
+  return {motion.start_from_end.conjugate(),
+          motion.covariance.topLeftCorner<3, 3>() +
+              by_state * covariance_ * by_state.transpose() +
+              share * share * Eigen::Matrix3d::Identity()};
+}
+
 std::optional<CameraTurn> CameraImu::Turn(double from, double to) const {
   const std::optional<PreintegratedMotion> motion = Motion(from, to);
   if (!motion.has_value()) return std::nullopt;
-  const Eigen::Matrix<double, 3, 7> by_state = ByState(from, to, *motion);
-  const double share =
-      kShareOfTurn * RotationVector(motion->start_from_end).norm();
-  return CameraTurn{motion->start_from_end.conjugate(),
-                    motion->covariance.topLeftCorner<3, 3>() +
-                        by_state * covariance_ * by_state.transpose() +
-                        share * share * Eigen::Matrix3d::Identity()};
+  const Eigen::Vector3d angles = RotationVector(motion->start_from_end);
+  CameraTurn turn = TurnOf(*motion, StateDerivative(from, to, *motion));
+  turn.covariance.diagonal().array() += angles.dot(untested_ * angles);
+  return turn;
 }
 
 std::optional<CameraRate> CameraImu::Rate(double from, double to) const {
@@ -140,22 +149,28 @@ std::optional<CameraRate> CameraImu::Rate(double from, double to) const {
 
 void CameraImu::Learn(double from, double to, const CameraTurn& seen) {
   const std::optional<PreintegratedMotion> motion = Motion(from, to);
-  const std::optional<CameraTurn> turn = Turn(from, to);
-  if (!motion.has_value() || !turn.has_value()) return;
+  if (!motion.has_value()) return;
+  const ByState by_state = StateDerivative(from, to, *motion);
+  const CameraTurn turn = TurnOf(*motion, by_state);
   // Turns of the start's axes to those of the end have the opposite sign.
   const Eigen::Vector3d off =
-      -RotationVector(seen.cur_from_prev * turn->cur_from_prev.conjugate());
-  const Eigen::Matrix<double, 3, 7> by_state = ByState(from, to, *motion);
-  const Eigen::LLT<Eigen::Matrix3d> solver(turn->covariance + seen.covariance);
+      -RotationVector(seen.cur_from_prev * turn.cur_from_prev.conjugate());
+  const Eigen::Matrix3d expected = turn.covariance + seen.covariance;
+  const Eigen::LLT<Eigen::Matrix3d> solver(expected);
   if (solver.info() != Eigen::Success) return;
   const double chi2 = off.dot(solver.solve(off)) / 3.0;
   contradiction_ += kShareOfNew * (std::min(chi2, kMostOfOne) - contradiction_);
   ++learnt_;
   if (chi2 > kMostOfOne) return;
+  const Eigen::Vector3d angles = RotationVector(motion->start_from_end);
+  const Eigen::Vector3d shown = untested_ * angles;
+  untested_ -=
+      (shown * shown.transpose() / (angles.dot(shown) + expected.trace() / 3.0))
+          .eval();
   // A bias walks from one turn that is learnt to the next.
-  if (learnt_until_ > 0.0) {
+  if (learnt_until_.has_value()) {
     covariance_.topLeftCorner<3, 3>().diagonal().array() +=
-        noise_.gyro_walk * noise_.gyro_walk * (to - learnt_until_);
+        noise_.gyro_walk * noise_.gyro_walk * (to - *learnt_until_);
   }
   learnt_until_ = to;
   const Eigen::Matrix<double, 7, 3> gain =

@@ -33,13 +33,17 @@ struct CameraRate {
 // A gyroscope, with an accelerometer, beside a camera. While the camera is
 // tracked, turns that the images show correct what is known of the gyroscope:
 // its bias, the delay of its clock and how it is mounted (a Kalman filter over
-// these seven numbers). They also show whether the sensor can be believed.
+// these seven numbers). They also show whether the sensor can be believed:
+// about an axis about which no turn was seen yet, the covariance of a turn is
+// as large as the turn.
 class CameraImu {
  public:
   // Standard deviations of what a calibration says, before anything is learnt:
-  // the bias of a gyroscope, rad/s, of the delay, s, of the mounting, rad.
+  // the bias of a gyroscope, rad/s; the delay, s, and if no delay is given; the
+  // mounting, rad.
   static constexpr double kBiasSigma = 0.02;
   static constexpr double kDelaySigma = 0.01;
+  static constexpr double kUnknownDelaySigma = 0.03;
   static constexpr double kMountingSigma = 0.05;
 
   // The sensor must have a gyroscope whose mounting is known.
@@ -105,8 +109,14 @@ class CameraImu {
 
   // The derivatives of a turn, a rotation vector in the axes of its end, by the
   // state.
-  Eigen::Matrix<double, 3, 7> ByState(double from, double to,
-                                      const PreintegratedMotion& motion) const;
+  using ByState = Eigen::Matrix<double, 3, 7>;
+  ByState StateDerivative(double from, double to,
+                          const PreintegratedMotion& motion) const;
+
+  // The turn as if all axes had been tested.
+  CameraTurn TurnOf(const PreintegratedMotion& motion,
+                    const ByState& by_state) const;
+
   Eigen::Quaterniond cam_from_imu_turn() const;
   double delay() const { return delay_s_ + state_[3]; }
 
@@ -116,8 +126,12 @@ class CameraImu {
   ImuBuffer buffer_;
   State state_ = State::Zero();
   StateMatrix covariance_;
-  double learnt_until_ = 0.0;   // s
-  int learnt_ = 0;              // number of turns
+  // What else can be wrong is an unknown 3x3 matrix times the turn: the
+  // covariance of each of its rows. It shrinks along the axes of turns that
+  // were seen. About an axis that no such turn had, all may be wrong.
+  Eigen::Matrix3d untested_ = Eigen::Matrix3d::Identity();
+  std::optional<double> learnt_until_;  // s
+  int learnt_ = 0;                      // number of turns
   double contradiction_ = 1.0;  // mean chi^2 of a turn per degree of freedom
 };
 

@@ -111,6 +111,47 @@ TEST(CameraImuTest, DoubtsASensorThatContradictsTheImages) {
   }
 }
 
+// Turns about y do not show that x and z are swapped. The covariance of a turn
+// about x tells so until such turns have been seen.
+TEST(CameraImuTest, BelievesOnlyAxesThatTurnsHaveTested) {
+  constexpr double kRate = 0.5;  // rad/s
+  constexpr double kStep = 0.2;  // s
+  CameraImu imu({CameraWithImu().truth, true});
+  const double delay = *CameraWithImu().truth.delay_s;
+  const Eigen::Quaterniond cam_from_imu =
+      CameraWithImu().truth.cam_from_imu->rotation;
+  std::vector<ImuSample> samples;
+  for (int i = -100; i < 2000; ++i) {
+    const double t = 0.005 * i;
+    const Eigen::Vector3d rate =
+        kRate * (t < 5.0 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX());
+    samples.push_back(
+        {t + delay, cam_from_imu.conjugate() * rate, Eigen::Vector3d::Zero()});
+  }
+  imu.Add(samples);
+  const auto sigma = [&](double from) {
+    return std::sqrt(imu.Turn(from, from + kStep)->covariance.trace() / 3.0);
+  };
+  const auto teach = [&](double from, double to, const Eigen::Vector3d& axis) {
+    const Eigen::Quaterniond cur_from_prev =
+        Rigid3d::FromRotationVector(-kStep * kRate * axis,
+                                    Eigen::Vector3d::Zero())
+            .rotation;
+    for (double t = from; t < to; t += kStep) {
+      imu.Learn(t, t + kStep,
+                {cur_from_prev,
+                 kTurnSigma * kTurnSigma * Eigen::Matrix3d::Identity()});
+    }
+  };
+  EXPECT_GT(sigma(1.0), 0.9 * kRate * kStep);
+  teach(0.0, 4.0, Eigen::Vector3d::UnitY());
+  EXPECT_LT(sigma(1.0), 0.03 * kRate * kStep);
+  EXPECT_GT(sigma(6.0), 0.9 * kRate * kStep);
+  teach(6.0, 8.0, Eigen::Vector3d::UnitX());
+  EXPECT_LT(sigma(6.0), 0.03 * kRate * kStep);
+  EXPECT_TRUE(imu.is_trusted()) << imu.doubt();
+}
+
 TEST(CameraImuTest, OneWrongPoseDoesNotRuinIt) {
   CameraWithImu world;
   CameraImu imu = Taught(&world, world.truth);
