@@ -12,9 +12,9 @@ namespace rgbd_pose {
 // Hands the samples of an inertial sensor out with the frames of its camera.
 class ImuFeed {
  public:
-  // How far the samples of a frame reach beyond its stamp, s: rows of a rolling
-  // shutter are exposed until then.
-  static constexpr double kReach = 0.05;
+  // How far the samples of a frame reach beyond its stamp, s: up to 0.05 s for
+  // the rows of a rolling shutter, and a delay that nobody has told.
+  static constexpr double kReach = 0.15;
 
   // `delay_s`: see ImuCalibration.
   explicit ImuFeed(double delay_s = 0.0) : delay_s_(delay_s) {}
