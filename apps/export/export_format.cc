@@ -18,13 +18,6 @@ namespace fs = std::filesystem;
 // Colour images are large, and strong compression would take most of the time.
 const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
 
-cv::Mat InMillimetres(const Frame& frame) {
-  cv::Mat depth = frame.depth.clone();
-  depth.setTo(0, frame.depth == Frame::kNoDepth);
-  depth.convertTo(depth, CV_16UC1, kMillimetresPerMetre / frame.depth_scale);
-  return depth;
-}
-
 [[noreturn]] void FailToWrite(const fs::path& path,
                               const std::error_code& error) {
   throw InputError("--output: " + path.string() + " cannot be created (" +
@@ -55,6 +48,7 @@ const std::vector<ExportFormat>& ExportFormats() {
       {"colmap", "colmap", ExportColmap},
       {"nerfstudio", "nerfstudio", ExportNerfstudio},
       {"mcap", "run.mcap", ExportMcap},
+      {"ros2", "run_ros2.mcap", ExportRos2},
       {"kitti", "kitti", ExportKitti},
       {"tum", "trajectory_tum.txt", ExportTum},
       {"g2o", "poses.g2o", ExportG2o},
@@ -78,6 +72,13 @@ ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
           cloud.cloud().Thin(options.max_points)};
 }
 
+cv::Mat DepthInMillimetres(const Frame& frame) {
+  cv::Mat depth = frame.depth.clone();
+  depth.setTo(0, frame.depth == Frame::kNoDepth);
+  depth.convertTo(depth, CV_16UC1, kMillimetresPerMetre / frame.depth_scale);
+  return depth;
+}
+
 std::string ImageName(const FinishedRun& run, int view) {
   return Format("%06d.png", run.frames[view]);
 }
@@ -90,7 +91,7 @@ ExportedViews WriteViewImages(const FinishedRun& run,
     const std::string name = ImageName(run, view);
     WritePngFile(color_folder / name, frame.color, kQuick);
     if (!depth_folder.empty()) {
-      WritePngFile(depth_folder / name, InMillimetres(frame));
+      WritePngFile(depth_folder / name, DepthInMillimetres(frame));
     }
   });
 }

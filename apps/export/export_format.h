@@ -88,6 +88,7 @@ std::string ExportColmap(const FinishedRun& run, const ExportOptions& options);
 std::string ExportNerfstudio(const FinishedRun& run,
                              const ExportOptions& options);
 std::string ExportMcap(const FinishedRun& run, const ExportOptions& options);
+std::string ExportRos2(const FinishedRun& run, const ExportOptions& options);
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
@@ -117,11 +118,14 @@ struct ExportedViews {
 ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
                          const OnView& on_image);
 
+// Depth in whole millimetres (CV_16UC1), 0 where it is missing.
+cv::Mat DepthInMillimetres(const Frame& frame);
+
 // The file name of the image of a view, by its frame number.
 std::string ImageName(const FinishedRun& run, int view);
 
 // Writes the images as files of these names. With a folder for them, depth
-// images are written in whole millimetres, 0 where depth is missing.
+// images are written as by DepthInMillimetres.
 ExportedViews WriteViewImages(const FinishedRun& run,
                               const ExportOptions& options,
                               const std::filesystem::path& color_folder,

@@ -6,49 +6,22 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "apps/export/export_format.h"
+#include "apps/export/mcap_writer.h"
+#include "apps/export/run_states.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
-#include "frontend/bags/mcap_format.h"
 
 namespace rgbd_pose {
 namespace {
 
 using Json = nlohmann::json;
 
-// Bytes after which a chunk is closed.
-constexpr size_t kMcapChunkSize = 1 << 20;
-
-constexpr std::string_view kNoText;  // no profile, codec or metadata
-constexpr uint32_t kNone = 0;        // attachments and the like
-
-// Serialises numbers in little-endian order, and texts (also lists and maps
-// that are serialised already) after their length.
-template <typename... Fields>
-std::string Pack(const Fields&... fields) {
-  std::string bytes;
-  const auto append = [&bytes](const auto& field) {
-    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(field)>>) {
-      AppendLittleEndian(field, &bytes);
-    } else {
-      const std::string_view text = field;
-      AppendLittleEndian(static_cast<uint32_t>(text.size()), &bytes);
-      bytes += text;
-    }
-  };
-  (append(fields), ...);
-  return bytes;
-}
-
-std::string RecordOf(McapOpcode opcode, const std::string& content) {
-  return static_cast<char>(opcode) + Pack(uint64_t{content.size()}) + content;
-}
-
+// The schema of a message, whose lists must not be empty. Text named "data" is
+// base64, as in all Foxglove types.
 Json SchemaOf(const Json& value) {
   if (value.is_array()) {
     return {{"type", "array"}, {"items", SchemaOf(value.front())}};
@@ -63,103 +36,6 @@ Json SchemaOf(const Json& value) {
   }
   return {{"type", "object"}, {"properties", properties}};
 }
-
-// Builds an mcap file (mcap.dev/spec) of JSON messages, with uncompressed
-// chunks, schemas, indexes, statistics and checksums.
-class McapWriter {
- public:
-  // Appends a message. The schema of the name `type` is derived from the first
-  // message of a topic, whose lists must not be empty; text named "data" is
-  // base64, as in all Foxglove types. Times (ns) must not decrease.
-  void Write(const std::string& topic, const std::string& type, uint64_t time,
-             const Json& message) {
-    if (messages_++ == 0) first_time_ = time;
-    if (chunk_.empty()) chunk_time_ = time;
-    last_time_ = time;
-    const auto [place, is_new] = channels_.try_emplace(topic);
-    Channel& channel = place->second;
-    if (is_new) {
-      channel.id = static_cast<uint16_t>(channels_.size());
-      const std::string schema = SchemaOf(message).dump();
-      channel.schema =
-          RecordOf(kMcapSchema, Pack(channel.id, type, "jsonschema", schema));
-      channel.record = RecordOf(
-          kMcapChannel, Pack(channel.id, channel.id, topic, "json", kNoText));
-      chunk_ += channel.schema + channel.record;
-    }
-    channel.index += Pack(time, uint64_t{chunk_.size()});
-    // The log time and the publish time are equal.
-    chunk_ += RecordOf(
-        kMcapMessage,
-        Pack(channel.id, channel.messages++, time, time) + message.dump());
-    if (chunk_.size() >= kMcapChunkSize) CloseChunk();
-  }
-
-  // Returns the bytes of the whole file. Must be called once, at the end.
-  std::string Finish() {
-    CloseChunk();
-    file_ += RecordOf(kMcapDataEnd, Pack(McapChecksum(file_)));
-    const uint64_t summary = file_.size();
-    std::string schemas, channels, counts;
-    for (const auto& [topic, channel] : channels_) {
-      schemas += channel.schema;
-      channels += channel.record;
-      counts += Pack(channel.id, uint64_t{channel.messages});
-    }
-    const auto number = static_cast<uint16_t>(channels_.size());
-    file_ += schemas + channels + chunk_indexes_ +
-             RecordOf(kMcapStatistics,
-                      Pack(messages_, number, uint32_t{number}, kNone, kNone,
-                           chunks_, first_time_, last_time_, counts));
-    // The footer is without summary offsets; the checksum of the summary is its
-    // last field.
-    const std::string footer =
-        RecordOf(kMcapFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
-    file_.append(footer, 0, footer.size() - sizeof(uint32_t));
-    file_ += Pack(McapChecksum(std::string_view(file_).substr(summary)));
-    return std::move(file_ += kMcapMagic);
-  }
-
- private:
-  struct Channel {
-    uint16_t id = 0;  // of the channel and of its schema
-    std::string schema, record;
-    uint32_t messages = 0;
-    std::string index;  // of the messages in chunk_
-  };
-
-  void CloseChunk() {
-    if (chunk_.empty()) return;
-    const uint64_t start = file_.size(), size = chunk_.size();
-    file_ += RecordOf(kMcapChunk, Pack(chunk_time_, last_time_, size,
-                                       McapChecksum(chunk_), kNoText, size) +
-                                      chunk_);
-    const uint64_t end = file_.size();
-    std::string places;
-    for (auto& [topic, channel] : channels_) {
-      if (channel.index.empty()) continue;
-      places += Pack(channel.id, uint64_t{file_.size()});
-      file_ += RecordOf(kMcapMessageIndex, Pack(channel.id, channel.index));
-      channel.index.clear();
-    }
-    const uint64_t index_size = file_.size() - end;
-    chunk_indexes_ += RecordOf(kMcapChunkIndex,
-                               Pack(chunk_time_, last_time_, start, end - start,
-                                    places, index_size, kNoText, size, size));
-    ++chunks_;
-    chunk_.clear();
-  }
-
-  std::string file_ =
-      std::string(kMcapMagic) +
-      RecordOf(kMcapHeader, Pack(kNoText, "rgbd_pose " RGBD_POSE_VERSION));
-  std::string chunk_;                        // records not yet in file_
-  std::map<std::string, Channel> channels_;  // by topic
-  std::string chunk_indexes_;
-  uint32_t chunks_ = 0;
-  uint64_t messages_ = 0;
-  uint64_t first_time_ = 0, chunk_time_ = 0, last_time_ = 0;  // ns
-};
 
 // Foxglove's z axis points up, and it shows the frame "map" by default. That is
 // our world with x forward, y left and z up.
@@ -253,16 +129,7 @@ Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
 }  // namespace
 
 std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
-  Trajectory path;
-  for (size_t i = 0; i < run.segments.size(); ++i) {
-    if (run.segments[i] == run.segments[0]) path.push_back(run.trajectory[i]);
-  }
-  if (path[0].timestamp < 0.0 ||
-      path.back().timestamp > std::numeric_limits<uint32_t>::max()) {
-    throw InputError((run.folder.empty() ? "" : "--run: " + run.folder + ": ") +
-                     "Foxglove has times from 1970 to 2106; export the poses "
-                     "with --to=tum");
-  }
+  const Trajectory path = TimedPath(run, "Foxglove");
   RequireWritable(options.output);
   // Images are kept in memory, because the cloud, which needs all frames, comes
   // first.
@@ -274,19 +141,22 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
         images[run.trajectory[view].timestamp] = {jpeg.begin(), jpeg.end()};
       });
 
-  McapWriter file;
+  McapWriter file("", "json");
   // Time stamps of trajectories have 6 decimals.
   constexpr uint64_t kMicro = 1000, kSecond = 1000000000;  // ns
   const auto write = [&file](const char* topic, const std::string& type,
                              double seconds, Json message) {
     const uint64_t time = kMicro * std::llround(1e6 * seconds);
     message["timestamp"] = {{"sec", time / kSecond}, {"nsec", time % kSecond}};
-    file.Write(topic, "foxglove." + type, time, message);
+    if (!file.HasTopic(topic)) {
+      file.AddTopic(
+          topic, {"foxglove." + type, "jsonschema", SchemaOf(message).dump()});
+    }
+    file.Write(topic, time, message.dump());
   };
-  const Rigid3d map_from_world({0.5, -0.5, 0.5, -0.5}, {0.0, 0.0, 0.0});
   const double start = path[0].timestamp;
   write("/tf_static", "FrameTransform", start,
-        FrameTransform(kMap, kWorld, map_from_world));
+        FrameTransform(kMap, kWorld, UprightFromWorld()));
   write("/path", "PosesInFrame", start, PosesInFrame(path));
   const Trajectory keyframes = KeyframesOf(run, path);
   if (!keyframes.empty()) {
@@ -306,16 +176,9 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
            {"data", Base64(std::exchange(image->second, {}))}});
   }
   WriteFileAtomically(options.output, file.Finish());
-  std::string text =
-      Format("%zu poses, %zu images, %zu points in %s\n", path.size(),
-             images.size(), views.cloud.size(), options.output.c_str());
-  if (path.size() < run.segments.size()) {
-    text += Format(
-        "%zu poses of other segments are left out: their position relative to "
-        "the first segment is unknown\n",
-        run.segments.size() - path.size());
-  }
-  return text;
+  return Format("%zu poses, %zu images, %zu points in %s\n", path.size(),
+                images.size(), views.cloud.size(), options.output.c_str()) +
+         LeftOut(run, path);
 }
 
 }  // namespace rgbd_pose

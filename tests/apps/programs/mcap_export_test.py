@@ -62,8 +62,9 @@ def take(content, layout):
     return (*fields, content[at:])
 
 
-def read_mcap(path):
-    """Topics with the names of their schemas, schema and messages: (ns, JSON)."""
+def read_mcap(path, profile=b'', encodings=(b'json', b'jsonschema'), read_schema=json.loads,
+              read_message=lambda text, schema: json.loads(text)):
+    """Topics with the names of their schemas, schema and messages: (ns, content)."""
     with open(path, 'rb') as file:
         data = file.read()
     check(data.startswith(MAGIC) and data.endswith(MAGIC), 'magic')
@@ -71,6 +72,7 @@ def read_mcap(path):
     kinds = [record[0] for record in everything]
     end = kinds.index(DATA_END)
     check(kinds[0] == HEADER and kinds.count(HEADER) == 1, 'header')
+    check(take(everything[0][1], 's')[0] == profile, 'profile')
     check(set(kinds[1:end]) == {CHUNK, INDEX}, 'data section', kinds)
 
     topics, schemas, seen, indexes, last, waiting = {}, [], [], [], 0, {}
@@ -90,9 +92,9 @@ def read_mcap(path):
             if inner == MESSAGE:
                 channel, number, log, published, text = take(record, 'HIQQ')
                 check(log == published and log >= last, 'times')
-                messages = topics[channel][3]
+                schema, messages = topics[channel][2:]
                 check(number == len(messages), 'number of message')
-                messages.append((log, json.loads(text)))
+                messages.append((log, read_message(text, schema)))
                 last = log
                 times.append(log)
                 waiting[channel] = waiting.get(channel, b'') + struct.pack('<QQ', log, at)
@@ -101,10 +103,10 @@ def read_mcap(path):
             else:
                 check(inner == CHANNEL, 'in chunk', inner)
                 channel, schema, topic, encoding, metadata, rest = take(record, 'HHsss')
-                check(encoding == b'json' and metadata == rest == b'', topic)
+                check(encoding == encodings[0] and metadata == rest == b'', topic)
                 _, name, encoding, text, rest = next(s for s in schemas if s[0] == schema)
-                check(encoding == b'jsonschema' and rest == b'' and schema > 0, name)
-                topics[channel] = (topic.decode(), name.decode(), json.loads(text), [])
+                check(encoding == encodings[1] and rest == b'' and schema > 0, name)
+                topics[channel] = (topic.decode(), name.decode(), read_schema(text), [])
             if inner != MESSAGE:
                 seen.append((inner, record))
         check((first, final) == (times[0], times[-1]), 'times of chunk')

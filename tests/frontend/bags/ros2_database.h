@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/frontend/bags/bag_fixture.h"
-#include "tests/support/cdr_writer.h"
+#include "frontend/bags/cdr_writer.h"
 
 namespace rgbd_pose {
 

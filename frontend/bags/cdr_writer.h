@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -7,13 +8,13 @@
 
 namespace rgbd_pose {
 
-// Messages of ROS 2 in CDR, little-endian: a header of four bytes, then each
-// number aligned to its size.
+// Writes messages of ROS 2 in CDR, little-endian: a header of four bytes, then
+// each number aligned to its size.
 class CdrWriter {
  public:
   template <typename T>
   CdrWriter& Number(T value) {
-    while (body_.size() % sizeof(T) != 0) body_ += '\xee';  // padding
+    while (body_.size() % sizeof(T) != 0) body_ += '\0';
     char bytes[sizeof(T)];
     std::memcpy(bytes, &value, sizeof(T));
     body_.append(bytes, sizeof(T));
@@ -30,14 +31,17 @@ class CdrWriter {
     body_ += bytes;
     return *this;
   }
+  // An array of a fixed length.
   CdrWriter& Numbers(const std::vector<double>& numbers) {
     for (const double number : numbers) Number(number);
     return *this;
   }
+  // std_msgs/Header; s.
   CdrWriter& Header(double stamp, const std::string& frame) {
-    const auto seconds = static_cast<int32_t>(stamp);
-    Number(seconds);
-    Number(static_cast<uint32_t>((stamp - seconds) * 1e9 + 0.5));
+    constexpr int64_t kSecond = 1000000000;  // ns
+    const int64_t time = std::llround(stamp * kSecond);
+    Number(static_cast<int32_t>(time / kSecond));
+    Number(static_cast<uint32_t>(time % kSecond));
     return Text(frame);
   }
 

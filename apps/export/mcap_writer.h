@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace rgbd_pose {
+
+// How the messages of a topic are to be read.
+struct McapSchema {
+  std::string type;      // its name
+  std::string encoding;  // of `text`: jsonschema, ros2msg
+  std::string text;
+};
+
+// Builds an mcap file (mcap.dev/spec) with uncompressed chunks, schemas,
+// indexes, statistics and checksums.
+class McapWriter {
+ public:
+  // `profile`: ros2, or empty. `encoding`: of all messages, json or cdr.
+  McapWriter(const std::string& profile, std::string encoding);
+
+  bool HasTopic(const std::string& topic) const {
+    return channels_.count(topic) != 0;
+  }
+  void AddTopic(const std::string& topic, const McapSchema& schema);
+
+  // Appends a message of a topic that was added. Times (ns) must not decrease.
+  void Write(const std::string& topic, uint64_t time,
+             const std::string& message);
+
+  // Returns the bytes of the whole file. Must be called once, at the end.
+  std::string Finish();
+
+ private:
+  struct Channel {
+    uint16_t id = 0;  // of the channel and of its schema
+    std::string schema, record;
+    uint32_t messages = 0;
+    std::string index;  // of the messages in chunk_
+  };
+
+  void CloseChunk();
+
+  std::string encoding_;
+  std::string file_;
+  std::string chunk_;                        // records not yet in file_
+  std::map<std::string, Channel> channels_;  // by topic
+  std::string chunk_indexes_;
+  uint32_t chunks_ = 0;
+  uint64_t messages_ = 0;
+  uint64_t first_time_ = 0, chunk_time_ = 0, last_time_ = 0;  // ns
+};
+
+}  // namespace rgbd_pose
