@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/frontend/bags/bag_fixture.h"
 #include "frontend/bags/cdr_writer.h"
+#include "tests/frontend/bags/bag_fixture.h"
 
 namespace rgbd_pose {
 
