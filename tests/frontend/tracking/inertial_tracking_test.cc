@@ -131,6 +131,30 @@ TEST(InertialTrackingTest, KnowsTheAngularVelocityOfEachFrame) {
   EXPECT_LT(mean_error(TrackHand(Sensor::kGood, false)), 0.7 * without);
 }
 
+// The delay of the sensor that is found if colour is exposed so much later (s)
+// than its camera file says.
+double DelayFound(double exposed_later) {
+  const HandWithImu& hand = HandWithImu::Get();
+  Odometry odometry = OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
+  odometry.UseImu(hand.sensor);
+  odometry.AddImu(hand.samples);
+  for (Frame frame : hand.sequence.frames) {
+    frame.color_shutter.offset -= exposed_later;
+    odometry.Track(frame);
+  }
+  EXPECT_TRUE(odometry.imu()->is_trusted()) << odometry.imu()->doubt();
+  return odometry.imu()->Calibration().delay_s.value();
+}
+
+// A wrong time between colour and depth distorts the first result, not the
+// second.
+TEST(InertialTrackingTest, FindsWhenColourWasExposed) {
+  constexpr double kLater = 0.010;  // s
+  const double found = DelayFound(kLater);
+  EXPECT_NEAR(found, kLater, 0.003);
+  EXPECT_NEAR(found + DelayFound(kLater - found), kLater, 0.001);
+}
+
 // The path of a sensor with swapped axes is that without it, to the last bit.
 TEST(InertialTrackingTest, ASensorThatContradictsTheImagesIsLeftOut) {
   const TrackedHand with = TrackHand(Sensor::kSwapped, false);
