@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frontend/sources/imu_feed.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
 namespace rgbd_pose {
@@ -57,14 +58,15 @@ class BagImuTest : public Ros1BagTest {
     });
   }
 
-  // Expects the samples of all frames, which reach 0.05 s beyond each.
+  // Expects the samples of all frames, which reach beyond each.
   static void ExpectSamples(FrameSource* source, double rate) {
     std::vector<ImuSample> all;
     while (const std::optional<RgbdFrame> next = source->Next()) {
       all.insert(all.end(), next->imu.begin(), next->imu.end());
       ASSERT_FALSE(all.empty());
-      EXPECT_GE(all.back().stamp, next->timestamp + 0.05);
-      EXPECT_LT(all.back().stamp, next->timestamp + 0.05 + 1.1 / rate);
+      EXPECT_GE(all.back().stamp, next->timestamp + ImuFeed::kReach);
+      EXPECT_LT(all.back().stamp,
+                next->timestamp + ImuFeed::kReach + 1.1 / rate);
     }
     ASSERT_GT(all.size(), 100u);
     for (size_t k = 0; k < all.size(); ++k) {

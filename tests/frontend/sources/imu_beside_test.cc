@@ -80,12 +80,12 @@ TEST_F(ImuBesideTest, SamplesComeWithTheFrames) {
     EXPECT_EQ(source->timestamps().size(), 3u);
     EXPECT_EQ(source->unmatched_color(), 1);
     EXPECT_EQ(source->remarks().size(), 0u);
-    // From 0.90 to 1.05, 1.09 and 1.15 s; 0.90 + 0.01 * k is rounded.
+    // From 0.90 to 1.15, 1.19 and 1.25 s; 0.90 + 0.01 * k is rounded.
     const std::vector<int> counts = Counts(source.get());
     ASSERT_EQ(counts.size(), 3u);
-    EXPECT_NEAR(counts[0], 16, 1);
-    EXPECT_NEAR(counts[0] + counts[1], 20, 1);
-    EXPECT_NEAR(counts[0] + counts[1] + counts[2], 26, 1);
+    EXPECT_NEAR(counts[0], 26, 1);
+    EXPECT_NEAR(counts[0] + counts[1], 30, 1);
+    EXPECT_NEAR(counts[0] + counts[1] + counts[2], 36, 1);
     std::filesystem::remove(file);
   }
 }
@@ -127,7 +127,7 @@ TEST_F(ImuBesideTest, EachPartOfTheCalibrationComesFromTheNearestFile) {
   EXPECT_TRUE((*known.cam_from_imu * Eigen::Vector3d(0.0, 0.0, 1.0))
                   .isApprox(Eigen::Vector3d(-0.98, 0.0, 0.0), 1e-9));
   // Stamps are 0.1 s late, so the same samples come with each frame.
-  EXPECT_NEAR(Counts(source.get())[0], 16, 1);
+  EXPECT_NEAR(Counts(source.get())[0], 26, 1);
 }
 
 TEST_F(ImuBesideTest, CameraYamlOfTheFolderMaySayIt) {

@@ -21,7 +21,7 @@ std::vector<double> StampsOf(const std::vector<ImuSample>& samples) {
 
 TEST(ImuFeedTest, GivesEachSampleOnceAndReachesBeyondTheFrame) {
   ImuFeed feed;
-  for (int k = 0; k <= 6; ++k) feed.Add(At(0.05 * k));
+  for (int k = 0; k <= 6; ++k) feed.Add(At(k / 20.0));
   EXPECT_TRUE(feed.Covers(0.1));
   EXPECT_FALSE(feed.Covers(0.16));
   // 0.05 s and kReach are 0.2 s, which is a sample.
@@ -34,7 +34,7 @@ TEST(ImuFeedTest, GivesEachSampleOnceAndReachesBeyondTheFrame) {
 
 TEST(ImuFeedTest, CountsByTheClockOfTheSensor) {
   ImuFeed feed(5.0);
-  for (int k = 0; k <= 6; ++k) feed.Add(At(5.0 + 0.05 * k));
+  for (int k = 0; k <= 6; ++k) feed.Add(At(5.0 + k / 20.0));
   EXPECT_TRUE(feed.Covers(0.1));
   EXPECT_FALSE(feed.Covers(0.16));
   EXPECT_EQ(feed.Take(0.049).size(), 5u);
