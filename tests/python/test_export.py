@@ -56,8 +56,8 @@ def test_is_that_of_the_program(name, run, recording, tmp_path):
     assert written.path == os.fspath(written) == str(ours)
     assert written.summary == said.replace(str(theirs), str(ours))
     assert repr(written) == f"Export({str(ours)!r})"
-    if name == "g2o":
-        return  # a path has no graph
+    if name in ("g2o", "ros2"):
+        return  # a path has no graph and no covariances
     path = tmp_path / f"path{ending}"
     of_run = run / "trajectory.txt"
     rgbd_pose.export_path(recording, of_run, name, path, **COARSE)
