@@ -319,9 +319,9 @@ def main(bin_folder, work, colmap):
     check(len(data_lines(tum)) == FRAMES, 'TUM')
     check_g2o(export('g2o', 'graph.g2o'), poses)
     check_lenses(program, work)
-    # Foxglove's files are read by mcap_export_test.py.
+    # mcap files are read by mcap_export_test.py and ros2_export_test.py.
     choices = re.search(r'--to .*\n.*\n *one of: (.*)', run(program('rgbd_export'), '--help'))
-    unchecked = set(choices.group(1).split()) - exported - {'mcap'}
+    unchecked = set(choices.group(1).split()) - exported - {'mcap', 'ros2'}
     check(not unchecked, 'no check of', *unchecked)
 
 
