@@ -146,10 +146,6 @@ RelativePose KeyframeGraph::Reanchor(RelativePose edge) const {
   return edge;
 }
 
-bool KeyframeGraph::IsFixed(int at) const {
-  return nodes_[at].is_held || first_of_.at(segment(at)) == at;
-}
-
 struct KeyframeGraph::Problem {
   PoseGraph graph;
   std::vector<int> pose_of;  // by keyframe; -1: none

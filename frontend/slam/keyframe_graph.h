@@ -71,6 +71,10 @@ class KeyframeGraph {
   // map_from_cam and the segment of a keyframe.
   const Rigid3d& pose(int at) const { return nodes_[at].map_from_cam; }
   int segment(int at) const { return nodes_[at].segment; }
+  // The first keyframe of its segment. It is fixed, as are those that are held.
+  int FirstOf(int at) const { return first_of_.at(segment(at)); }
+  bool IsFixed(int at) const { return IsHeld(at) || FirstOf(at) == at; }
+  bool IsHeld(int at) const { return nodes_[at].is_held; }
   // The motion between two keyframes by their current poses.
   Rigid3d CurFromRef(int ref, int cur) const {
     return pose(cur).Inverse() * pose(ref);
@@ -150,7 +154,6 @@ class KeyframeGraph {
   };
   struct Problem;
 
-  bool IsFixed(int at) const;
   Problem Build(const std::vector<int>& free, bool graduated) const;
   void AddUps(const std::vector<bool>& is_free, Problem* problem) const;
   std::string Solve(const std::vector<int>& free, bool graduated);

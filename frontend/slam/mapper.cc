@@ -13,6 +13,15 @@ constexpr int kSampleStepPx = 40;
 // Maximum flow between a redundant view and the view that replaces it.
 constexpr double kRedundantFlowPx = 30.0;
 
+// A covariance of [omega C] in other axes.
+MotionMatrix InAxes(const Eigen::Quaterniond& rotation,
+                    const MotionMatrix& covariance) {
+  MotionMatrix turned = MotionMatrix::Zero();
+  turned.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
+  turned.bottomRightCorner<3, 3>() = turned.topLeftCorner<3, 3>();
+  return turned * covariance * turned.transpose();
+}
+
 }  // namespace
 
 std::string MappingOptions::Check() const {
@@ -214,6 +223,31 @@ void Mapper::PublishMovedPoses(MapUpdate* update) {
     keyframe.published = place;
     update->moved[keyframe.id] = place;
   }
+}
+
+std::vector<MotionMatrix> Mapper::Covariances() const {
+  std::vector<MotionMatrix> covariances = graph_.Covariances();
+  if (covariances.empty()) return covariances;
+  auto covariance = covariances.begin();
+  for (int at = 0; at < graph_.size(); ++at) {
+    if (graph_.IsRemoved(at)) continue;
+    if (!graph_.IsFixed(at)) {
+      *covariance += keyframes_[at].timing_covariance;
+      const int first = graph_.FirstOf(at);
+      if (!graph_.IsHeld(first)) {
+        // An error of the first keyframe turns and moves all others, about
+        // where it is.
+        const Rigid3d& start = graph_.pose(first);
+        const Rigid3d map_from_start(Eigen::Quaterniond::Identity(),
+                                     start.translation);
+        *covariance = ComposedCovariance(
+            graph_.pose(at).Inverse() * map_from_start, *covariance, Rigid3d(),
+            InAxes(start.rotation, keyframes_[first].timing_covariance));
+      }
+    }
+    ++covariance;
+  }
+  return covariances;
 }
 
 KeyframeMap Mapper::Map(bool as_solved) const {

@@ -114,6 +114,12 @@ class Mapper {
   // measured, or `as_solved` by KeyframeGraph::CovarianceAsSolved.
   KeyframeMap Map(bool as_solved = false) const;
 
+  // After Finish: covariances of the poses in the order of Map(), of [omega C],
+  // relative to the first keyframe of the segment. Those of the graph and, on
+  // top, what all pairs of a keyframe share: the error of its own timing. Empty
+  // if they cannot be computed.
+  std::vector<MotionMatrix> Covariances() const;
+
   // The poses and pairs of keyframes; covariances in the order of Map().
   const KeyframeGraph& graph() const { return graph_; }
 

@@ -115,9 +115,10 @@ class Slam {
   }
 
   // After Finish: covariances of the keyframe poses in map order, [omega (rad),
-  // C (m)] as in PoseGraph; empty if they cannot be computed.
+  // C (m)] as in PoseGraph (Mapper::Covariances); empty if they cannot be
+  // computed.
   std::vector<MotionMatrix> Covariances() const {
-    return mapper_.graph().Covariances();
+    return mapper_.Covariances();
   }
 
   // After Finish: the graph of keyframe pairs.

@@ -16,6 +16,7 @@
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "tests/support/motion_error.h"
+#include "tests/support/shutter_sequence.h"
 
 namespace rgbd_pose {
 namespace {
@@ -351,6 +352,35 @@ TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
     if (first.empty()) first = text;
     EXPECT_EQ(text, first) << threads;
   }
+}
+
+// What the velocity of a keyframe has wrong is in all its pairs, so that their
+// number does not make it smaller. That of the first one is in all poses.
+TEST(SlamTest, CovariancesKnowThatPairsShareTheTimingOfAKeyframe) {
+  double chi2 = 0.0;
+  int count = 0;
+  for (const int seed : {1, 2, 3, 4, 5}) {
+    SyntheticOptions options = ShutterOptions("handheld", RollingShutters(1.0));
+    options.seed = seed;
+    const SyntheticDataset dataset(options);
+    Slam slam(OdometrySettings(), SlamSettings(), dataset.camera());
+    for (int i = 0; i < kFrames; ++i) slam.Track(dataset.Read(i));
+    slam.Finish();
+    const KeyframeMap map = slam.Map();
+    const std::vector<MotionMatrix> covariances = slam.Covariances();
+    ASSERT_EQ(covariances.size(), map.keyframes.size());
+    const Rigid3d first = dataset.WorldFromCam(map.keyframes[0].id);
+    for (size_t k = 1; k < map.keyframes.size(); ++k) {
+      const Keyframe& keyframe = map.keyframes[k];
+      chi2 += SquaredMahalanobisDistance(
+          keyframe.world_from_cam.Inverse(),
+          dataset.WorldFromCam(keyframe.id).Inverse() * first, covariances[k]);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 5);
+  EXPECT_GT(chi2 / (6.0 * count), 0.1);
+  EXPECT_LT(chi2 / (6.0 * count), 1.0);
 }
 
 }  // namespace
