@@ -373,22 +373,20 @@ class Saver {
 TEST_F(MapFolderTest, SurvivesKills) {
   const KeyframeMap maps[] = {NoiseMap(4, 1), NoiseMap(3, 2)};
   SaveMap(map_, maps[0]);
-  // Some of the processes must have the time for several saves.
   const auto start = std::chrono::steady_clock::now();
   SaveMap(map_, maps[1]);
   SaveMap(map_, maps[0]);
-  const std::chrono::microseconds two_saves =
-      std::chrono::duration_cast<std::chrono::microseconds>(
-          std::chrono::steady_clock::now() - start);
+  // Some of the processes must have the time for several saves.
+  const std::chrono::duration<double> longest =
+      2.0 * (std::chrono::steady_clock::now() - start);
   std::mt19937 random(1);
-  std::uniform_int_distribution<int64_t> microseconds(0, 2 * two_saves.count());
+  std::uniform_real_distribution<double> share(0.0, 1.0);
   int found[2] = {};
   for (int i = 0; i < 100; ++i) {
     SCOPED_TRACE(i);
     {
       const Saver saver(map_, maps, i);
-      const std::chrono::microseconds time(microseconds(random));
-      std::this_thread::sleep_for(time);
+      std::this_thread::sleep_for(share(random) * longest);
     }
     const KeyframeMap loaded = LoadMap(map_);
     const bool is_second = IsSameMap(loaded, maps[1]);
