@@ -2,7 +2,6 @@
 // docs.foxglove.dev/docs/sdk/schemas, in an mcap file.
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>

@@ -100,8 +100,9 @@ void AddPoseCovariances(const std::map<double, MotionMatrix>& keyframes,
                         const Motions& motions,
                         std::vector<CameraState>* states) {
   std::vector<bool> is_known(states->size(), false);
-  is_known[0] = true;
-  for (size_t i = 1; i < states->size(); ++i) {
+  // The first pose is exact, unless it is in a map that was loaded.
+  is_known[0] = keyframes.empty();
+  for (size_t i = 0; i < states->size(); ++i) {
     CameraState& state = (*states)[i];
     const auto keyframe = keyframes.find(state.pose.timestamp);
     if (keyframe != keyframes.end()) {
@@ -127,11 +128,16 @@ void AddVelocityCovariances(const Motions& motions,
     const double seconds =
         (*states)[after].pose.timestamp - (*states)[before].pose.timestamp;
     if (!(seconds > 0.0)) continue;
+    MotionMatrix covariance = MotionMatrix::Zero();
     for (const size_t end : {before, after}) {
-      if (!motions[end].has_value()) continue;  // such as the first pose
-      (*states)[i].twist_covariance +=
-          InOwnAxes(*motions[end]) / (seconds * seconds);
+      if (motions[end].has_value()) {
+        covariance += InOwnAxes(*motions[end]) / (seconds * seconds);
+      } else if (end > 0) {  // The first pose has no motion and no error.
+        covariance.setZero();
+        break;
+      }
     }
+    (*states)[i].twist_covariance = covariance;
   }
 }
 

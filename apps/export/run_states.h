@@ -26,7 +26,8 @@ Rigid3d UprightFromWorld();
 struct CameraState {
   StampedPose pose;
 
-  // Of [omega C] of the pose, as in keyframes.csv: relative to the first pose.
+  // Of [omega C] of the pose, as in keyframes.csv: relative to the first pose,
+  // or to the first keyframe of a map that was loaded.
   MotionMatrix covariance = MotionMatrix::Zero();
 
   // The mean velocity from the pose before to the one after, in the camera's
