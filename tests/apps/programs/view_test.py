@@ -222,7 +222,9 @@ def main():
     if not shutil.which('chromium'):
         print('skipped: no chromium')
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as folder:
+    # Children of the browser still write into its folder for a moment after it
+    # has ended, so that the folder may not be empty when it is removed.
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         with open(f'{folder}/half.yaml', 'w', encoding='utf-8') as file:
             file.write(CAMERA)
         subprocess.run(
