@@ -7,7 +7,7 @@
 
 #include "core/estimation/estimator.h"
 #include "core/estimation/motion_cost.h"
-#include "costs/direct/direct_points.h"
+#include "costs/direct/direct_options.h"
 
 namespace rgbd_pose {
 

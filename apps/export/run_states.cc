@@ -11,6 +11,7 @@
 #include "apps/results/frame_tables.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/format.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/util/quantile.h"
+#include "core/util/small_matrix.h"
 
 namespace rgbd_pose {
 namespace {

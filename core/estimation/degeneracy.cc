@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/util/format.h"
+#include "core/util/small_matrix.h"
 
 namespace rgbd_pose {
 namespace {

@@ -6,6 +6,7 @@
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
+#include "core/util/small_matrix.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {

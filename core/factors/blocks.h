@@ -53,12 +53,7 @@ struct PoseBlock {
   }
 
   // d x / d[omega p] for a quaternion of length 1.
-  static Eigen::Matrix<double, 7, 6> PlusJacobian(const double* x) {
-    Eigen::Matrix<double, 7, 6> J = Eigen::Matrix<double, 7, 6>::Zero();
-    J.topLeftCorner<4, 3>() = 0.5 * HalfAngleJacobian(x);
-    J.bottomRightCorner<3, 3>().setIdentity();
-    return J;
-  }
+  static Eigen::Matrix<double, 7, 6> PlusJacobian(const double* x);
 
   // Writes kRows x 7 numbers, row by row.
   template <int kRows>
@@ -74,63 +69,28 @@ struct PoseBlock {
   }
 
   // x moved by d[omega p].
-  static void Plus(const double* x, const double* d, double* moved) {
-    const PoseOf<double> pose = Read(x);
-    const Eigen::Quaterniond turn =
-        Rigid3d::FromRotationVector({d[0], d[1], d[2]}, {0, 0, 0}).rotation;
-    Eigen::Map<Eigen::Vector4d>(moved, 4) = (pose.q * turn).coeffs();
-    for (int i = 0; i < 3; ++i) moved[4 + i] = x[4 + i] + d[3 + i];
-  }
+  static void Plus(const double* x, const double* d, double* moved);
 
   // The d[omega p] that moves x to y.
-  static Eigen::Matrix<double, 6, 1> Minus(const double* y, const double* x) {
-    const PoseOf<double> to = Read(y), from = Read(x);
-    Eigen::Matrix<double, 6, 1> d;
-    d << RotationVector(from.q.conjugate() * to.q), to.p - from.p;
-    return d;
-  }
+  static Eigen::Matrix<double, 6, 1> Minus(const double* y, const double* x);
 
   // A direction of the tangent in words.
-  static std::string NameOf(int tangent) {
-    return (tangent < 3 ? "rotation about " : "position along ") +
-           std::string(1, "xyz"[tangent % 3]);
-  }
+  static std::string NameOf(int tangent);
 
   // A pose of the size of a scene, for checks.
-  static PoseVector Random(FactorSampler* random) {
-    const Rigid3d pose = random->Motion();
-    PoseVector x;
-    x << pose.rotation.coeffs(), pose.translation;
-    return x;
-  }
+  static PoseVector Random(FactorSampler* random);
 
  private:
   // d q / d(omega / 2) = q * (omega / 2, 0).
-  static Eigen::Matrix<double, 4, 3> HalfAngleJacobian(const double* q) {
-    Eigen::Matrix<double, 4, 3> J;
-    J << q[3], -q[2], q[1],  //
-        q[2], q[3], -q[0],   //
-        -q[1], q[0], q[3],   //
-        -q[0], -q[1], -q[2];
-    return J;
-  }
+  static Eigen::Matrix<double, 4, 3> HalfAngleJacobian(const double* q);
 };
 
 // A rigid motion as the numbers of its block.
-inline PoseVector PoseVectorOf(const Rigid3d& world_from_body) {
-  PoseVector x;
-  x << world_from_body.rotation.coeffs(), world_from_body.translation;
-  return x;
-}
+PoseVector PoseVectorOf(const Rigid3d& world_from_body);
 // The same motion, as factors read it.
-inline PoseOf<double> PoseFrom(const Rigid3d& world_from_body) {
-  return {world_from_body.rotation, world_from_body.translation};
-}
+PoseOf<double> PoseFrom(const Rigid3d& world_from_body);
 // The motion of a block.
-inline Rigid3d RigidOf(const PoseVector& pose) {
-  return Rigid3d(Eigen::Quaterniond(pose[3], pose[0], pose[1], pose[2]),
-                 pose.tail<3>());
-}
+Rigid3d RigidOf(const PoseVector& pose);
 
 // N numbers without constraints; they are their own tangent.
 template <int N>
@@ -179,10 +139,7 @@ struct TwistBlock : VectorBlock<6> {
   static constexpr char kName[] = "twist";  // for messages
 
   // A number of the block in words.
-  static std::string NameOf(int k) {
-    return (k < 3 ? "angular velocity about " : "velocity along ") +
-           std::string(1, "xyz"[k % 3]);
-  }
+  static std::string NameOf(int k);
 };
 
 // The inverse of a depth along an optical axis, 1/m.

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 
-#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/util/counter_random.h"
 
@@ -32,13 +30,7 @@ class FactorSampler {
   }
 
   // Any rotation, and a position (m) in the cube of -2 to 2.
-  Rigid3d Motion() {
-    Eigen::Vector4d q;
-    do {
-      q = Vector<4>(1.0);
-    } while (q.squaredNorm() > 1.0 || q.squaredNorm() < 0.01);
-    return Rigid3d(Eigen::Quaterniond(q), Vector<3>(2.0));
-  }
+  Rigid3d Motion();
 
   // The square root of an information with correlations, of about 1.
   template <int N>

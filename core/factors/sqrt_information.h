@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/geometry/motion.h"
+#include "core/util/small_matrix.h"
 
 namespace rgbd_pose {
 

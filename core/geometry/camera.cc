@@ -246,6 +246,12 @@ Vector2d Camera::Undistort(const Vector2d& pixel) const {
   return {fx * plane.x() + cx, fy * plane.y() + cy};
 }
 
+Eigen::Vector3d Camera::Unproject(const Vector2d& pixel,
+                                  double depth) const {
+  const Vector2d ideal = Undistort(pixel);
+  return Ray(ideal.x(), ideal.y()) * depth;
+}
+
 std::optional<RgbdCamera> CameraPreset(std::string_view name) {
   if (const auto* preset = FindNamed(kPresets, name)) return preset->value;
   return std::nullopt;

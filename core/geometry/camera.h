@@ -92,10 +92,7 @@ struct Camera {
   }
 
   // Point in camera axes (m) of an image pixel (distorted) at a depth z (m).
-  Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const {
-    const Eigen::Vector2d ideal = Undistort(pixel);
-    return Ray(ideal.x(), ideal.y()) * depth;
-  }
+  Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const;
 
   // Whether a point is in the image and at least `border_px` from its border.
   bool Contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -29,21 +28,7 @@ struct DepthNoiseModel {
 
   // One line that says what is wrong with the numbers, or empty. The default
   // values are invalid: sigma must be above 0 at every depth.
-  std::string Check() const {
-    if (!std::isfinite(constant) || !std::isfinite(quadratic) ||
-        !std::isfinite(centre) || constant < 0.0 || quadratic < 0.0) {
-      return "constant and quadratic must not be negative";
-    }
-    if (!(mean_share > 0.0 && mean_share <= 1.0)) {
-      return "mean_share must be above 0 and at most 1";
-    }
-    // Only depths above 0 count.
-    const bool is_somewhere_certain =
-        constant == 0.0 && (quadratic == 0.0 || centre > 0.0);
-    return is_somewhere_certain ? "sigma(z) = constant + quadratic (z - "
-                                  "centre)^2 must be above 0 for all depths"
-                                : "";
-  }
+  std::string Check() const;
 };
 
 // All depth noise models, for FindNamed:
@@ -53,14 +38,6 @@ struct DepthNoiseModel {
 //   nguyen      0.0012 + 0.0019 (z - 0.4)^2, Kinect v1, head on (Nguyen, Izadi
 //               & Lovell 2012)
 //   constant    5 mm, for unknown sensors
-inline const std::vector<DepthNoiseModel>& DepthNoiseModels() {
-  static const auto& models = *new std::vector<DepthNoiseModel>{
-      {"kinect", 0.0008, 0.0029, 0.0, 0.95},
-      {"khoshelham", 0.0, 1.425e-3},
-      {"nguyen", 0.0012, 0.0019, 0.4},
-      {"constant", 0.005},
-  };
-  return models;
-}
+const std::vector<DepthNoiseModel>& DepthNoiseModels();
 
 }  // namespace rgbd_pose

@@ -75,10 +75,6 @@ double SquaredMahalanobisDistance(const Rigid3d& cur_from_prev,
   return error.dot(covariance.ldlt().solve(error));
 }
 
-Eigen::SelfAdjointEigenSolver<SmallMatrix> EigenOf(const SmallMatrix& matrix) {
-  return Eigen::SelfAdjointEigenSolver<SmallMatrix>(matrix);
-}
-
 MotionVector MotionFromRigid(const Rigid3d& cur_from_prev) {
   const Eigen::Matrix3d R = cur_from_prev.rotation.toRotationMatrix();
   MotionVector x;

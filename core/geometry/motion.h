@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <array>
 
 #include "core/geometry/rigid3.h"
@@ -124,12 +123,6 @@ MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
 double SquaredMahalanobisDistance(const Rigid3d& cur_from_prev,
                                   const Rigid3d& other,
                                   const MotionMatrix& covariance);
-
-// Eigenvalues, which increase, and eigenvectors of a symmetric matrix, at most
-// 7 x 7. Compiled once for all sizes: Eigen's solver takes seconds.
-using SmallMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
-Eigen::SelfAdjointEigenSolver<SmallMatrix> EigenOf(const SmallMatrix& matrix);
 
 // The six parameters of a motion (origin: the identity). |beta| <= pi/2; at
 // beta = +-pi/2 alpha and gamma are not unique: one solution of them.

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cmath>
 
 // The alignment (bytes) of Eigen's memory that the libraries were built with, a
 // usage requirement of rgbd_pose::core. Eigen chooses it by the compiler flags
@@ -19,19 +18,10 @@ static_assert(EIGEN_MAX_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN &&
 namespace rgbd_pose {
 
 // The shortest rotation vector of a rotation, rad.
-inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
-  const double sine = rotation.vec().norm();
-  if (sine == 0.0) return Eigen::Vector3d::Zero();
-  const double angle = 2.0 * std::atan2(sine, std::abs(rotation.w()));
-  return std::copysign(angle / sine, rotation.w()) * rotation.vec();
-}
+Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation);
 
 // [v]x, with [v]x w = v x w.
-inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
+Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v);
 
 // A rigid motion, named target_from_source: point_in_target =
 // target_from_source * point_in_source. Inner names cancel in products:
@@ -45,54 +35,35 @@ struct Rigid3d {
 
   // The rotation is normalised; translation in metres.
   Rigid3d(const Eigen::Quaterniond& target_from_source_rotation,
-          const Eigen::Vector3d& source_origin_in_target)
-      : rotation(target_from_source_rotation.normalized()),
-        translation(source_origin_in_target) {}
+          const Eigen::Vector3d& source_origin_in_target);
 
   // The same from a rotation vector (rad).
   static Rigid3d FromRotationVector(
       const Eigen::Vector3d& rotation,
-      const Eigen::Vector3d& source_origin_in_target) {
-    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(rotation.norm(),
-                                                        rotation.normalized())),
-                   source_origin_in_target);
-  }
+      const Eigen::Vector3d& source_origin_in_target);
 
-  // Transforms a point from source to target.
+  // Transforms a point from source to target. Inline for loops over points.
   Eigen::Vector3d operator*(const Eigen::Vector3d& point_in_source) const {
     return rotation * point_in_source + translation;
   }
 
   // Returns target_from_other.
-  Rigid3d operator*(const Rigid3d& source_from_other) const {
-    return Rigid3d(rotation * source_from_other.rotation,
-                   rotation * source_from_other.translation + translation);
-  }
+  Rigid3d operator*(const Rigid3d& source_from_other) const;
 
   // Returns source_from_target.
-  Rigid3d Inverse() const {
-    const Eigen::Quaterniond inverse = rotation.conjugate();
-    return Rigid3d(inverse, -(inverse * translation));
-  }
+  Rigid3d Inverse() const;
 
-  // The angle in [0, pi], rad. Near 0 acos(w) would lose half of the digits.
-  double Angle() const {
-    return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
-  }
+  // The angle in [0, pi], rad.
+  double Angle() const;
 
   // Whether it moves nothing, exactly.
-  bool IsIdentity() const { return Angle() == 0.0 && translation.isZero(0.0); }
+  bool IsIdentity() const;
 
   // Exact comparison.
-  bool operator==(const Rigid3d& other) const {
-    return rotation.coeffs() == other.rotation.coeffs() &&
-           translation == other.translation;
-  }
+  bool operator==(const Rigid3d& other) const;
 
   // Whether no component is NaN or infinite.
-  bool IsFinite() const {
-    return rotation.coeffs().allFinite() && translation.allFinite();
-  }
+  bool IsFinite() const;
 };
 
 }  // namespace rgbd_pose

@@ -13,9 +13,7 @@ struct Twist {
 
   // later_from_earlier over a time span in seconds (negative: backwards), for
   // fractions of a second: the translation is exact to first order.
-  Rigid3d MotionDuring(double seconds) const {
-    return Rigid3d::FromRotationVector(-seconds * angular, -seconds * linear);
-  }
+  Rigid3d MotionDuring(double seconds) const;
 
   // A static point (camera axes, m) as seen after `seconds`, to second order.
   template <typename T>
@@ -48,21 +46,12 @@ struct Twist {
 };
 
 // Operators for weighted sums of twists.
-inline Twist operator+(const Twist& a, const Twist& b) {
-  return {a.angular + b.angular, a.linear + b.linear};
-}
-inline Twist operator-(const Twist& a, const Twist& b) {
-  return {a.angular - b.angular, a.linear - b.linear};
-}
-inline Twist operator*(double factor, const Twist& twist) {
-  return {factor * twist.angular, factor * twist.linear};
-}
+Twist operator+(const Twist& a, const Twist& b);
+Twist operator-(const Twist& a, const Twist& b);
+Twist operator*(double factor, const Twist& twist);
 
 // The constant twist that makes a motion in `seconds`, which must not be 0.
-inline Twist TwistOf(const Rigid3d& later_from_earlier, double seconds) {
-  return {-RotationVector(later_from_earlier.rotation) / seconds,
-          -later_from_earlier.translation / seconds};
-}
+Twist TwistOf(const Rigid3d& later_from_earlier, double seconds);
 
 // Exposure times of the rows of an image: row r of H is exposed at
 //

@@ -8,6 +8,7 @@
 #include "core/factors/pose_manifold.h"
 #include "core/factors/relative_pose.h"
 #include "core/pose_graph/spanning_tree.h"
+#include "core/util/small_matrix.h"
 
 namespace rgbd_pose {
 

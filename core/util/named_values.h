@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/util/input_error.h"
-#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 
@@ -25,11 +24,9 @@ std::vector<std::string> NamesOf(const Rows& rows) {
   return names;
 }
 
-inline InputError UnknownName(const std::string& what, const std::string& name,
-                              const std::vector<std::string>& names) {
-  return InputError("unknown " + what + " '" + name +
-                    "'; available: " + Join(names));
-}
+// The error for a name that is not in a table, with those that are.
+InputError UnknownName(const std::string& what, const std::string& name,
+                       const std::vector<std::string>& names);
 
 // Returns the row with this name, or null if there is none.
 template <typename Rows>

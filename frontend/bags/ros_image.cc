@@ -8,6 +8,7 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame.h"
 

@@ -6,6 +6,7 @@
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/small_matrix.h"
 #include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
 

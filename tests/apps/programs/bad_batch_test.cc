@@ -1,5 +1,6 @@
 // Wrong lists, grids, shards and folders of a batch.
 
+#include "core/util/text_file.h"
 #include "tests/support/bad_input.h"
 
 namespace rgbd_pose {

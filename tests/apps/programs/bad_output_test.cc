@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "core/util/text_file.h"
 #include "tests/support/bad_input.h"
 
 namespace rgbd_pose {

@@ -2,6 +2,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/util/text_file.h"
 #include "tests/support/bad_input.h"
 
 namespace rgbd_pose {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/util/text_file.h"
 #include "tests/support/run_program.h"
 
 namespace rgbd_pose {

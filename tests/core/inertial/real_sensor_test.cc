@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/util/text_file.h"
 #include "tests/support/run_program.h"
 
 namespace rgbd_pose {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/util/text_file.h"
 #include "frontend/sources/open_source.h"
 #include "tests/support/tum_sequence.h"
 

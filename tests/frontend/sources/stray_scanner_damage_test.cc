@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/util/text_file.h"
 #include "frontend/sources/frame_stream.h"
 #include "tests/frontend/sources/stray_scanner_fixture.h"
 #include "tests/support/expect_input_error.h"

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/evaluation/evaluation.h"
+#include "core/util/text_file.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/frame_stream.h"
 #include "tests/frontend/sources/stray_scanner_fixture.h"
