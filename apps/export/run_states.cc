@@ -83,6 +83,8 @@ bool IsRosTime(double seconds) {
   return seconds >= 0.0 && seconds <= std::numeric_limits<int32_t>::max();
 }
 
+double RosTime(double seconds) { return std::round(1e6 * seconds) / 1e6; }
+
 std::string LeftOut(size_t poses) {
   if (poses == 0) return "";
   return Format(

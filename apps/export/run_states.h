@@ -16,6 +16,9 @@ Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by);
 // Whether ROS has a time (s), from 1970 to 2038.
 bool IsRosTime(double seconds);
 
+// The time (s) as trajectories have it, with 6 decimals.
+double RosTime(double seconds);
+
 // A line for users on the number of poses that are left out, because they are
 // not of the first segment; empty if none.
 std::string LeftOut(size_t poses);
