@@ -1,6 +1,5 @@
 #include "apps/export/ros2_recording.h"
 
-#include <cmath>
 #include <filesystem>
 #include <utility>
 

@@ -52,7 +52,7 @@ class Ros2Recording {
   std::optional<size_t> place_;  // of its pose
   std::string error_;            // why nothing more is recorded
 
-  // Used by the worker's tasks alone.
+  // Used by the worker's tasks, and by Finish after them.
   GrowingFile file_;
   Ros2Writer writer_;
 
