@@ -65,7 +65,8 @@ int Main(const RunSettings& settings, const ProgramInfo& info) {
   const int threads = NumThreads(FLAGS_threads);
 
   // Check the input before the work starts and before anything is written.
-  Sequence sequence = OpenSequence(settings.sequence);
+  Sequence sequence = OpenSequence(
+      settings.sequence, /*keep_color=*/!settings.output.record.empty());
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
   SequenceRun run(settings.odometry, sequence.source->camera(),

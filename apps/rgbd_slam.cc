@@ -113,7 +113,8 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
       Calibrate(settings, threads);
   const bool has_camera = found.has_value() && found->result.is_accepted;
   Sequence sequence =
-      OpenSequence(settings.sequence, /*keep_color=*/false,
+      OpenSequence(settings.sequence,
+                   /*keep_color=*/!settings.output.record.empty(),
                    has_camera ? &found->result.camera : nullptr);
   Warn(sequence.remarks);
   RequireMapToSave(settings);

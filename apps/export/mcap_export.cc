@@ -177,7 +177,7 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
   WriteFileAtomically(options.output, file.Finish());
   return Format("%zu poses, %zu images, %zu points in %s\n", path.size(),
                 images.size(), views.cloud.size(), options.output.c_str()) +
-         LeftOut(run, path);
+         LeftOut(run.segments.size() - path.size());
 }
 
 }  // namespace rgbd_pose

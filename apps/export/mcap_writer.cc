@@ -42,9 +42,9 @@ std::string RecordOf(McapOpcode opcode, const std::string& content) {
 
 McapWriter::McapWriter(const std::string& profile, std::string encoding)
     : encoding_(std::move(encoding)),
-      file_(std::string(kMcapMagic) +
-            RecordOf(kMcapHeader,
-                     Pack(profile, "rgbd_pose " RGBD_POSE_VERSION))) {}
+      bytes_(std::string(kMcapMagic) +
+             RecordOf(kMcapHeader,
+                      Pack(profile, "rgbd_pose " RGBD_POSE_VERSION))) {}
 
 void McapWriter::AddTopic(const std::string& topic, const McapSchema& schema) {
   Channel& channel = channels_[topic];
@@ -69,10 +69,16 @@ void McapWriter::Write(const std::string& topic, uint64_t time,
   if (chunk_.size() >= kMcapChunkSize) CloseChunk();
 }
 
+std::string McapWriter::Take() {
+  taken_ += bytes_.size();
+  checksum_ = McapChecksum(bytes_, checksum_);
+  return std::exchange(bytes_, "");
+}
+
 std::string McapWriter::Finish() {
   CloseChunk();
-  file_ += RecordOf(kMcapDataEnd, Pack(McapChecksum(file_)));
-  const uint64_t summary = file_.size();
+  bytes_ += RecordOf(kMcapDataEnd, Pack(McapChecksum(bytes_, checksum_)));
+  const size_t summary = bytes_.size();
   std::string schemas, channels, counts;
   for (const auto& [topic, channel] : channels_) {
     schemas += channel.schema;
@@ -80,34 +86,34 @@ std::string McapWriter::Finish() {
     counts += Pack(channel.id, uint64_t{channel.messages});
   }
   const auto number = static_cast<uint16_t>(channels_.size());
-  file_ += schemas + channels + chunk_indexes_ +
-           RecordOf(kMcapStatistics,
-                    Pack(messages_, number, uint32_t{number}, kNone, kNone,
-                         chunks_, first_time_, last_time_, counts));
+  bytes_ += schemas + channels + chunk_indexes_ +
+            RecordOf(kMcapStatistics,
+                     Pack(messages_, number, uint32_t{number}, kNone, kNone,
+                          chunks_, first_time_, last_time_, counts));
   // The footer is without summary offsets; the checksum of the summary is its
   // last field.
   const std::string footer =
-      RecordOf(kMcapFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
-  file_.append(footer, 0, footer.size() - sizeof(uint32_t));
-  file_ += Pack(McapChecksum(std::string_view(file_).substr(summary)));
-  return std::move(file_ += kMcapMagic);
+      RecordOf(kMcapFooter, Pack(taken_ + summary, uint64_t{0}, uint32_t{0}));
+  bytes_.append(footer, 0, footer.size() - sizeof(uint32_t));
+  bytes_ += Pack(McapChecksum(std::string_view(bytes_).substr(summary)));
+  return std::move(bytes_ += kMcapMagic);
 }
 
 void McapWriter::CloseChunk() {
   if (chunk_.empty()) return;
-  const uint64_t start = file_.size(), size = chunk_.size();
-  file_ += RecordOf(kMcapChunk, Pack(chunk_time_, last_time_, size,
-                                     McapChecksum(chunk_), kNoText, size) +
-                                    chunk_);
-  const uint64_t end = file_.size();
+  const uint64_t start = taken_ + bytes_.size(), size = chunk_.size();
+  bytes_ += RecordOf(kMcapChunk, Pack(chunk_time_, last_time_, size,
+                                      McapChecksum(chunk_), kNoText, size) +
+                                     chunk_);
+  const uint64_t end = taken_ + bytes_.size();
   std::string places;
   for (auto& [topic, channel] : channels_) {
     if (channel.index.empty()) continue;
-    places += Pack(channel.id, uint64_t{file_.size()});
-    file_ += RecordOf(kMcapMessageIndex, Pack(channel.id, channel.index));
+    places += Pack(channel.id, taken_ + bytes_.size());
+    bytes_ += RecordOf(kMcapMessageIndex, Pack(channel.id, channel.index));
     channel.index.clear();
   }
-  const uint64_t index_size = file_.size() - end;
+  const uint64_t index_size = taken_ + bytes_.size() - end;
   chunk_indexes_ += RecordOf(
       kMcapChunkIndex, Pack(chunk_time_, last_time_, start, end - start, places,
                             index_size, kNoText, size, size));

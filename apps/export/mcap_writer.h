@@ -29,7 +29,12 @@ class McapWriter {
   void Write(const std::string& topic, uint64_t time,
              const std::string& message);
 
-  // Returns the bytes of the whole file. Must be called once, at the end.
+  // The bytes of the file so far, as far as they are final, and not those that
+  // an earlier call returned: for files that are written piece by piece.
+  std::string Take();
+
+  // Returns the rest of the bytes: without Take, of the whole file. Must be
+  // called once, at the end.
   std::string Finish();
 
  private:
@@ -43,8 +48,10 @@ class McapWriter {
   void CloseChunk();
 
   std::string encoding_;
-  std::string file_;
-  std::string chunk_;                        // records not yet in file_
+  std::string bytes_;                        // of the file, not yet taken
+  uint64_t taken_ = 0;                       // number of bytes
+  uint32_t checksum_ = 0;                    // of these
+  std::string chunk_;                        // records not yet in bytes_
   std::map<std::string, Channel> channels_;  // by topic
   std::string chunk_indexes_;
   uint32_t chunks_ = 0;

@@ -1,12 +1,10 @@
 #include "apps/export/run_states.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
-#include <utility>
 
 #include "apps/results/frame_tables.h"
 #include "apps/shell/csv_table.h"
@@ -66,82 +64,6 @@ Motions MotionsOf(const FinishedRun& run) {
   return motions;
 }
 
-// The covariance of [omega C] of a motion with C in the axes of the current
-// camera, too.
-MotionMatrix InOwnAxes(const RelativePose& edge) {
-  MotionMatrix turned = MotionMatrix::Identity();
-  turned.bottomRightCorner<3, 3>() =
-      edge.cur_from_ref.rotation.toRotationMatrix();
-  return turned * edge.covariance * turned.transpose();
-}
-
-// The poses around a pose, for its velocity; the same twice for a single pose.
-std::pair<size_t, size_t> Around(size_t place, size_t size) {
-  return {place == 0 ? 0 : place - 1, std::min(place + 1, size - 1)};
-}
-
-void AddVelocities(std::vector<CameraState>* states) {
-  for (size_t i = 0; i < states->size(); ++i) {
-    const auto [before, after] = Around(i, states->size());
-    const StampedPose& first = (*states)[before].pose;
-    const StampedPose& last = (*states)[after].pose;
-    const double seconds = last.timestamp - first.timestamp;
-    if (!(seconds > 0.0)) continue;
-    CameraState& state = (*states)[i];
-    const Rigid3d& start = first.world_from_cam;
-    const Rigid3d& end = last.world_from_cam;
-    state.twist.angular =
-        RotationVector(start.rotation.conjugate() * end.rotation) / seconds;
-    state.twist.linear = state.pose.world_from_cam.rotation.conjugate() *
-                         (end.translation - start.translation) / seconds;
-  }
-}
-
-void AddPoseCovariances(const std::map<double, MotionMatrix>& keyframes,
-                        const Motions& motions,
-                        std::vector<CameraState>* states) {
-  std::vector<bool> is_known(states->size(), false);
-  // The first pose is exact, unless it is in a map that was loaded.
-  is_known[0] = keyframes.empty();
-  for (size_t i = 0; i < states->size(); ++i) {
-    CameraState& state = (*states)[i];
-    const auto keyframe = keyframes.find(state.pose.timestamp);
-    if (keyframe != keyframes.end()) {
-      state.covariance = keyframe->second;
-    } else if (motions[i].has_value() && is_known[motions[i]->ref]) {
-      const CameraState& reference = (*states)[motions[i]->ref];
-      state.covariance = ComposedCovariance(
-          motions[i]->cur_from_ref, motions[i]->covariance,
-          reference.pose.world_from_cam.Inverse(), reference.covariance);
-    } else {
-      continue;
-    }
-    is_known[i] = true;
-  }
-}
-
-// Both poses usually have the same reference, so that its own error is not in
-// the velocity.
-void AddVelocityCovariances(const Motions& motions,
-                            std::vector<CameraState>* states) {
-  for (size_t i = 0; i < states->size(); ++i) {
-    const auto [before, after] = Around(i, states->size());
-    const double seconds =
-        (*states)[after].pose.timestamp - (*states)[before].pose.timestamp;
-    if (!(seconds > 0.0)) continue;
-    MotionMatrix covariance = MotionMatrix::Zero();
-    for (const size_t end : {before, after}) {
-      if (motions[end].has_value()) {
-        covariance += InOwnAxes(*motions[end]) / (seconds * seconds);
-      } else if (end > 0) {  // The first pose has no motion and no error.
-        covariance.setZero();
-        break;
-      }
-    }
-    (*states)[i].twist_covariance = covariance;
-  }
-}
-
 }  // namespace
 
 Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by) {
@@ -149,8 +71,7 @@ Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by) {
   for (size_t i = 0; i < run.segments.size(); ++i) {
     if (run.segments[i] == run.segments[0]) path.push_back(run.trajectory[i]);
   }
-  if (path[0].timestamp < 0.0 ||
-      path.back().timestamp > std::numeric_limits<int32_t>::max()) {
+  if (!IsRosTime(path[0].timestamp) || !IsRosTime(path.back().timestamp)) {
     throw InputError((run.folder.empty() ? "" : "--run: " + run.folder + ": ") +
                      asked_by +
                      " has times from 1970 to 2038; export the poses with "
@@ -159,12 +80,18 @@ Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by) {
   return path;
 }
 
-std::string LeftOut(const FinishedRun& run, const Trajectory& path) {
-  if (path.size() == run.segments.size()) return "";
+bool IsRosTime(double seconds) {
+  return seconds >= 0.0 && seconds <= std::numeric_limits<int32_t>::max();
+}
+
+double RosTime(double seconds) { return std::round(1e6 * seconds) / 1e6; }
+
+std::string LeftOut(size_t poses) {
+  if (poses == 0) return "";
   return Format(
       "%zu poses of other segments are left out: their position relative to "
       "the first segment is unknown\n",
-      run.segments.size() - path.size());
+      poses);
 }
 
 Rigid3d UprightFromWorld() {
@@ -173,13 +100,23 @@ Rigid3d UprightFromWorld() {
 
 std::vector<CameraState> StatesOf(const FinishedRun& run,
                                   const Trajectory& path) {
-  std::vector<CameraState> states(path.size());
-  for (size_t i = 0; i < path.size(); ++i) states[i].pose = path[i];
-  AddVelocities(&states);
-  if (run.folder.empty()) return states;
-  const Motions motions = MotionsOf(run);
-  AddPoseCovariances(KeyframeCovariances(run.folder), motions, &states);
-  AddVelocityCovariances(motions, &states);
+  std::map<double, MotionMatrix> known;
+  Motions motions(path.size());
+  if (!run.folder.empty()) {
+    known = KeyframeCovariances(run.folder);
+    motions = MotionsOf(run);
+  }
+  // The first pose is exact, unless it is in a map that was loaded.
+  if (known.empty()) known[path[0].timestamp] = MotionMatrix::Zero();
+  CameraStates all;
+  for (size_t i = 0; i < path.size(); ++i) {
+    const auto covariance = known.find(path[i].timestamp);
+    all.Add(path[i], motions[i],
+            covariance == known.end() ? std::nullopt
+                                      : std::optional(covariance->second));
+  }
+  std::vector<CameraState> states;
+  for (size_t i = 0; i < path.size(); ++i) states.push_back(all.At(i));
   return states;
 }
 

@@ -3,10 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/export/camera_states.h"
 #include "apps/export/export_format.h"
 #include "core/evaluation/trajectory.h"
-#include "core/geometry/motion.h"
-#include "core/geometry/twist.h"
 
 namespace rgbd_pose {
 
@@ -14,27 +13,19 @@ namespace rgbd_pose {
 // asks for it, if their times are not from 1970 to 2038, as ROS has them.
 Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by);
 
-// A line for users on the poses that such a path leaves out; empty if none.
-std::string LeftOut(const FinishedRun& run, const Trajectory& path);
+// Whether ROS has a time (s), from 1970 to 2038.
+bool IsRosTime(double seconds);
+
+// The time (s) as trajectories have it, with 6 decimals.
+double RosTime(double seconds);
+
+// A line for users on the number of poses that are left out, because they are
+// not of the first segment; empty if none.
+std::string LeftOut(size_t poses);
 
 // With x forward, y left and z up at the first camera pose, as ROS and viewers
 // expect it.
 Rigid3d UprightFromWorld();
-
-// What a run tells of the camera at the time of a pose. Covariances are zero
-// where they are not known.
-struct CameraState {
-  StampedPose pose;
-
-  // Of [omega C] of the pose, as in keyframes.csv: relative to the first pose,
-  // or to the first keyframe of a map that was loaded.
-  MotionMatrix covariance = MotionMatrix::Zero();
-
-  // The mean velocity from the pose before to the one after, in the camera's
-  // axes, and the covariance of [angular linear] that follows from both poses.
-  Twist twist;
-  MotionMatrix twist_covariance = MotionMatrix::Zero();
-};
 
 // For the poses of TimedPath. The covariance of a keyframe of the map is that
 // of the map; other covariances are composed along the motions of edges.csv.

@@ -75,6 +75,10 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
        &settings->save_cloud},
       {"save_mesh", kGroup, "the same for a coloured mesh (.ply or .glb)",
        &settings->save_mesh},
+      {"record", kGroup,
+       "new file (.mcap) that is written during the run for ROS 2: images, "
+       "odometry with covariances, transforms; empty: none",
+       &settings->record},
       {"voxel", kGroup, "voxel size (m) of the cloud and the mesh",
        &settings->voxel},
   };

@@ -21,6 +21,7 @@ struct RunOutputSettings {
   std::string debug_images;  // FrameSelection
   std::string save_cloud;    // file; empty: no cloud
   std::string save_mesh;     // file; empty: no mesh
+  std::string record;        // file; empty: no recording
   double voxel = 0.01;       // side of the voxels of both, m
 };
 

@@ -102,7 +102,8 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
 }  // namespace
 
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
-                        RunOutput* output, LiveView* view) {
+                        RunOutput* output, Ros2Recording* recording,
+                        LiveView* view) {
   const StopSignal signal(FLAGS_finish_on_signal);
   const size_t size = source->timestamps().size();
   std::string ended_by;
@@ -114,6 +115,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                 DepthScaleWarning(frame)});
         }
         output->Add(frame, *run);
+        if (recording != nullptr) recording->Add(frame, *run);
         bar.Update(static_cast<int>(run->frames().size()));
         ended_by = view->Add(frame, [&] { return !signal.name().empty(); });
         if (!signal.name().empty()) ended_by = signal.name();
@@ -133,6 +135,7 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   const std::string& folder = settings.output.output;
   const std::string& cloud = settings.output.save_cloud;
   const std::string& mesh = settings.output.save_mesh;
+  const std::string& record = settings.output.record;
   if (!(cloud + mesh).empty() && !std::filesystem::exists(dataset)) {
     throw InputError(
         std::string(mesh.empty() ? "--save_cloud" : "--save_mesh") +
@@ -140,25 +143,47 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
         "' is not a file or folder; record it with rgbd_convert first");
   }
   RequireOutside("output", folder, dataset);
+  if (!record.empty()) RequireOutside("record", record, dataset);
   FrameSource& source = *sequence->source;
   RunOutput output(settings.output, source, settings.odometry);
   const size_t known_frames = source.timestamps().size();
   if (known_frames > 0) output.WarnOfMissingImages(known_frames);
+  std::optional<Ros2Recording> recording;
+  if (!record.empty()) recording.emplace(record, source);
   LiveView view(dataset, settings.view, source.camera().camera, *run);
   if (view.is_open()) {
     std::fprintf(stderr, "view on     %s\n", view.address().c_str());
   }
   const std::string stopped =
-      TrackSource(&source, threads, run, &output, &view);
+      TrackSource(&source, threads, run, &output,
+                  recording.has_value() ? &*recording : nullptr, &view);
   const double seconds = SecondsSince(start);
   if (known_frames == 0) output.WarnOfMissingImages(run->frames().size());
 
+  // If something cannot be written, the other results stay.
+  std::string missing;
+  std::string text;
+  const auto attempt = [&](const auto& write) {
+    try {
+      text += write();
+    } catch (const InputError& error) {
+      missing += (missing.empty() ? "" : "; ") + std::string(error.what());
+    }
+  };
+  // This comes first, because a live camera repeats nothing.
+  std::string recorded;
+  if (recording.has_value()) {
+    attempt([&] {
+      recorded = recording->Finish();
+      return "";
+    });
+  }
+
   const Trajectory* const truth = sequence->GroundTruth();
   const RunResults results = run->Finish(truth);
-  std::string text;
   nlohmann::json more = {{"stopped", stopped}};
   if (found.has_value()) {
-    text = WriteFound(*found, settings, output.folder());
+    text += WriteFound(*found, settings, output.folder());
     more["calibration"] = CalibrationToJson(found->result);
   }
   const Slam* const slam = run->slam();
@@ -169,15 +194,7 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
     text += FormatSlamSummary(more["slam"]);
     WriteMapTables(*run, output.folder());
   }
-  // If something cannot be written, the other results stay.
-  std::string missing;
-  const auto attempt = [&](const auto& write) {
-    try {
-      text += write();
-    } catch (const InputError& error) {
-      missing += (missing.empty() ? "" : "; ") + std::string(error.what());
-    }
-  };
+  text += recorded;
   if (FLAGS_report) {
     attempt([&] {
       const bool has_page = HasReportLibrary();

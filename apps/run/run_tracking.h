@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/export/ros2_recording.h"
 #include "apps/results/run_output.h"
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"
@@ -28,9 +29,11 @@ struct RunSettings {
 
 // Tracks the frames of a source, with a progress bar and warnings. Returns why
 // it ended early (a signal, the page's stop button, a failing source, too many
-// damaged frames), or empty. Throws InputError if no frame was read.
+// damaged frames), or empty. `recording` may be null. Throws InputError if no
+// frame was read.
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
-                        RunOutput* output, LiveView* view);
+                        RunOutput* output, Ros2Recording* recording,
+                        LiveView* view);
 
 // The rest of a program after its sequence was opened: tracks the frames,
 // writes, shows and prints all results. `start` is that of the program, `found`

@@ -271,9 +271,10 @@ class McapFile final : public BagReader {
 
 }  // namespace
 
-uint32_t McapChecksum([[maybe_unused]] std::string_view bytes) {
+uint32_t McapChecksum([[maybe_unused]] std::string_view bytes,
+                      [[maybe_unused]] uint32_t before) {
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-  return libdeflate_crc32(0, bytes.data(), bytes.size());
+  return libdeflate_crc32(before, bytes.data(), bytes.size());
 #else
   return 0;
 #endif

@@ -22,8 +22,8 @@ enum McapOpcode : uint8_t {
   kMcapDataEnd = 0x0f,
 };
 
-// The CRC-32 of the bytes. In a build without libdeflate 0, which in a file
-// means that there is none.
-uint32_t McapChecksum(std::string_view bytes);
+// The CRC-32 of the bytes, after others with the CRC-32 `before`. In a build
+// without libdeflate 0, which in a file means that there is none.
+uint32_t McapChecksum(std::string_view bytes, uint32_t before = 0);
 
 }  // namespace rgbd_pose

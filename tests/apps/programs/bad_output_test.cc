@@ -56,6 +56,23 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
           {"the cloud is the ground truth", nullptr,
            "--save_cloud={seq}/groundtruth.txt", 2,
            "{seq}/groundtruth.txt: a point cloud needs the extension .ply"},
+          {"a recording of ROS 1", nullptr, "--record={dir}/a.bag", 2,
+           "--record={dir}/a.bag: the name of a recording for ROS 2 must end "
+           "in .mcap"},
+          {"the recording's folder is missing", nullptr,
+           "--record={dir}/none/a.mcap", 2,
+           "{dir}/none/a.mcap: cannot be written (No such file"},
+          {"the recording exists",
+           [](const Seq& s) { s.Write("../mine.mcap", "mine"); },
+           "--record={dir}/mine.mcap", 2,
+           "{dir}/mine.mcap: exists; choose another name, or remove it"},
+          {"the recording was left by a killed program",
+           [](const Seq& s) { s.Write("../left.mcap.partial", "mine"); },
+           "--record={dir}/left.mcap", 2,
+           "{dir}/left.mcap.partial: another program is writing it, or a"},
+          {"a recording beside the images that are read", nullptr,
+           "--record={seq}/a.mcap", 2,
+           "--record={seq}/a.mcap: is in the recording's own folder {seq}"},
           {"the cloud is the mesh", nullptr,
            "--save_cloud={dir}/a.ply --save_mesh={dir}/a.ply", 2,
            "--save_cloud and --save_mesh are the same file"},
@@ -171,6 +188,19 @@ TEST_F(BadInputTest, ACloudThatDoesNotFitCostsNothingElse) {
                                  "other results are in "));
   EXPECT_TRUE(fs::exists(folder_ / "out/metrics.json"));
   EXPECT_FALSE(fs::exists(folder_ / "cloud.ply"));
+}
+
+// What was recorded makes room for the results.
+TEST_F(BadInputTest, ARecordingThatDoesNotFitCostsNothingElse) {
+  fs::rename(folder_ / "good", folder_ / "seq");
+  const RunResult run = RunCommand(
+      WithFullDisk(40, Fill(Odometry() + "--record={dir}/a.mcap")), folder_);
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("a.mcap: writing failed (File too large); all "
+                                 "other results are in "));
+  EXPECT_TRUE(fs::exists(folder_ / "out/metrics.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.mcap"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.mcap.partial"));
 }
 
 // The page is by far the largest file, and can be written later.

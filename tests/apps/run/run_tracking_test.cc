@@ -66,7 +66,8 @@ class RunTrackingTest : public testing::Test {
     files.output = folder_ / "run";
     RunOutput output(files, source, settings);
     LiveView view("", {}, source.camera().camera, run);
-    std::string stopped = TrackSource(&source, 1, &run, &output, &view);
+    std::string stopped =
+        TrackSource(&source, 1, &run, &output, nullptr, &view);
     frames_ = static_cast<int>(run.frames().size());
     return stopped;
   }
