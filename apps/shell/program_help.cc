@@ -39,9 +39,9 @@ std::string FormatHelp(const ProgramHelp& help) {
     codes.push_back(std::to_string(exit.code) + " " + exit.meaning);
   }
   return text +
-         "\nAlso: --flagfile=FILE reads flags from a file, --help, --version; "
-         "--help=man, --help=bash, --help=zsh\nprint a manual page and "
-         "completions for shells.\nExit codes: " +
+         "\nAlso: --flagfile=FILE reads flags from a file, --help, --version.\n"
+         "--help=man prints a manual page, --help=bash and --help=zsh what "
+         "completes flags in these shells.\nExit codes: " +
          Join(codes) + ".\n";
 }
 
