@@ -20,8 +20,8 @@ RUN cmake --build --preset release
 RUN cpack --config build/CPackConfig.cmake -G DEB -B /packages
 
 FROM debian:${DEBIAN}-slim
-COPY --from=build /packages/ /packages/
+COPY --from=build /packages/rgbd-pose-tools_*.deb /packages/
 RUN apt-get update && \
-  apt-get install --yes --no-install-recommends /packages/rgbd-pose-tools_*.deb && \
+  apt-get install --yes --no-install-recommends /packages/*.deb && \
   rm -r /packages /var/lib/apt/lists/*
 WORKDIR /data
