@@ -38,6 +38,18 @@ function(rgbd_pose_install_program name)
                                   COMPONENT tools)
 endfunction()
 
+# The page of a program for man, and its completions for bash and zsh. Debian's
+# zsh does not read the usual folder below /usr, so it is none of the package.
+function(rgbd_pose_install_pages man bash zsh)
+  set(share ${CMAKE_INSTALL_DATADIR})
+  install(FILES ${man} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
+  install(FILES ${bash} DESTINATION ${share}/bash-completion/completions
+          COMPONENT tools)
+  install(FILES ${zsh} DESTINATION ${share}/zsh/site-functions COMPONENT zsh)
+  install(FILES ${zsh} DESTINATION ${share}/zsh/vendor-completions
+          COMPONENT tools EXCLUDE_FROM_ALL)
+endfunction()
+
 # Installs the package's files; those for find_package serve the build tree,
 # too.
 function(rgbd_pose_install_package)

@@ -12,11 +12,13 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
+#include "apps/shell/program_help.h"
 #include "apps/shell/stop_signal.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -68,12 +70,6 @@ class SettingFlags {
   std::deque<std::variant<int, uint32_t, double, bool, std::string>> defaults_;
 };
 
-bool IsHelp(const std::string& argument) {
-  return argument == "-h" || argument == "--h" || argument == "-help" ||
-         argument == "--help" || argument == "--help=true" ||
-         argument == "--helpfull" || argument == "--helpshort";
-}
-
 // Shortens numbers: gflags prints all 17 digits.
 std::string FlagValue(const gflags::CommandLineFlagInfo& flag,
                       const std::string& value) {
@@ -107,33 +103,38 @@ std::vector<std::string> ChoicesOf(const ProgramInfo& info,
                                        : choices->second;
 }
 
-void PrintHelp(const ProgramInfo& info) {
-  std::printf("%s: %s\n\nExample:\n  %s\n", info.name.c_str(),
-              info.summary.c_str(), info.example.c_str());
+// What the tables say about the program.
+ProgramHelp HelpOf(const ProgramInfo& info) {
+  ProgramHelp help = {info.name, info.summary, info.example, {}};
   for (const FlagGroup& group : AllGroups(info)) {
-    std::printf("\n%s:\n", group.title.c_str());
+    help.groups.push_back({group.title, {}});
     for (const std::string& name : group.flags) {
       const auto flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
-      std::printf("  --%s (%s", name.c_str(), flag.type.c_str());
-      if (!flag.default_value.empty()) {
-        std::printf(", default %s",
-                    FlagValue(flag, flag.default_value).c_str());
-      }
-      std::printf(")\n      %s\n", flag.description.c_str());
-      const std::vector<std::string> choices = ChoicesOf(info, name);
-      if (choices.empty()) continue;
-      std::printf("      one of: %s\n", Join(choices, " ").c_str());
+      help.groups.back().flags.push_back(
+          {name, flag.type, FlagValue(flag, flag.default_value),
+           flag.description, ChoicesOf(info, name)});
     }
   }
   gflags::CommandLineFlagInfo flag;
-  if (gflags::GetCommandLineFlagInfo("dataset", &flag)) {
-    std::printf("\nA recording may be the first word, without --dataset=.\n");
-  }
-  std::printf(
-      "\nAlso: --flagfile=FILE reads flags from a file, --help, --version.\n"
-      "Exit codes: 0 ok, 1 usage, 2 bad input, 3 tracking failed, 4 some batch "
-      "items failed, 5 no better camera found,\n"
-      "6 stopped early: results so far are kept.\n");
+  help.takes_recording = gflags::GetCommandLineFlagInfo("dataset", &flag);
+  return help;
+}
+
+// The form of help that an argument asks for; nullptr if it asks for none.
+HelpFormat HelpFormatOf(const std::string& argument) {
+  static const std::map<std::string, HelpFormat> kForms = {
+      {"-h", FormatHelp},
+      {"--h", FormatHelp},
+      {"-help", FormatHelp},
+      {"--help", FormatHelp},
+      {"--help=true", FormatHelp},
+      {"--helpfull", FormatHelp},
+      {"--helpshort", FormatHelp},
+      {"--help=man", FormatManualPage},
+      {"--help=bash", FormatBashCompletion},
+      {"--help=zsh", FormatZshCompletion}};
+  const auto form = kForms.find(argument);
+  return form == kForms.end() ? nullptr : form->second;
 }
 
 // The words of the command line. If a recording begins them, it becomes
@@ -179,8 +180,8 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body) {
   const SettingFlags settings(info.settings);
   for (int i = 1; i < argc; ++i) {
-    if (IsHelp(argv[i])) {
-      PrintHelp(info);
+    if (const HelpFormat format = HelpFormatOf(argv[i])) {
+      std::fputs(format(HelpOf(info)).c_str(), stdout);
       return kExitOk;
     }
     if (std::string(argv[i]) == "--version") {

@@ -70,6 +70,7 @@ EXCEPTIONS = {
         'scripts/mutants': left_out('takes minutes'),
         'scripts/endurance': left_out('takes an hour'),
         'scripts/check_packages': left_out('takes minutes and needs root'),
+        'scripts/check_dockerfile': left_out('takes half an hour and needs root'),
         'scripts/check_platforms': left_out('takes 40 minutes and needs root'),
         'scripts/benchmark --quick':
             left_out('takes minutes; tests/benchmarks/benchmark_programs_test.cc runs '
