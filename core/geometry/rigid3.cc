@@ -25,8 +25,8 @@ Rigid3d::Rigid3d(const Eigen::Quaterniond& target_from_source_rotation,
 Rigid3d Rigid3d::FromRotationVector(
     const Eigen::Vector3d& rotation,
     const Eigen::Vector3d& source_origin_in_target) {
-  return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(rotation.norm(),
-                                                      rotation.normalized())),
+  return Rigid3d(Eigen::Quaterniond(
+                     Eigen::AngleAxisd(rotation.norm(), rotation.normalized())),
                  source_origin_in_target);
 }
 
