@@ -246,8 +246,7 @@ Vector2d Camera::Undistort(const Vector2d& pixel) const {
   return {fx * plane.x() + cx, fy * plane.y() + cy};
 }
 
-Eigen::Vector3d Camera::Unproject(const Vector2d& pixel,
-                                  double depth) const {
+Eigen::Vector3d Camera::Unproject(const Vector2d& pixel, double depth) const {
   const Vector2d ideal = Undistort(pixel);
   return Ray(ideal.x(), ideal.y()) * depth;
 }
