@@ -79,6 +79,8 @@ EXCEPTIONS = {
         'scripts/accuracy': left_out('takes minutes'),
         'scripts/cost_accuracy': left_out('takes minutes'),
         'scripts/frontends': left_out('takes minutes'),
+        'scripts/tum_benchmark freiburg1_desk':
+            left_out('downloads; tests/scripts/tum_benchmark_test.py runs it'),
     },
     'README.md': {
         'scripts/demo': slow('renders and tracks for minutes'),
