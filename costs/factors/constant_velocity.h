@@ -7,6 +7,7 @@
 #include "core/factors/blocks.h"
 #include "core/factors/rotations.h"
 #include "core/factors/sampler.h"
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/factors/sampler.h"
+#include "core/geometry/motion.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
