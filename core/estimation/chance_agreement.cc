@@ -39,12 +39,10 @@ double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements) {
   const auto end = std::upper_bound(
       all.begin(), all.end(), limit,
       [](double w, const MatchAgreement& match) { return w < match.width; });
-  double extent = kLeastExtent;
-  if (end != all.end()) {
-    // Half of the wrong ones, uniform in a ball, are within the median.
-    const double median = (end + (all.end() - end) / 2)->width;
-    extent = std::max(extent, median * std::pow(2.0, 1.0 / rows));
-  }
+  const double extent =
+      end == all.end()
+          ? kLeastExtent
+          : ExtentOfWrong((end + (all.end() - end) / 2)->width, rows);
   const double n = static_cast<double>(all.size());
   const double needed = std::ceil(kMotionRows / rows);
   for (double k = static_cast<double>(end - all.begin()); k > needed; --k) {
@@ -58,6 +56,11 @@ double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements) {
     if (least < -kMotionRows * kMotionRows) break;
   }
   return std::exp(least);
+}
+
+// Half of the wrong ones, uniform in a ball, are within the median.
+double ExtentOfWrong(double median_width, double rows) {
+  return std::max(kLeastExtent, median_width * std::pow(2.0, 1.0 / rows));
 }
 
 }  // namespace rgbd_pose

@@ -24,4 +24,8 @@ struct MatchAgreement {
 // that are used; those up to `limit` agree.
 double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements);
 
+// R of FalseAlarms, in limits: how far the residuals of wrong matches extend.
+// `median_width` is that of the matches that do not agree, `rows` their rows.
+double ExtentOfWrong(double median_width, double rows);
+
 }  // namespace rgbd_pose

@@ -6,6 +6,7 @@
 
 #include "core/estimation/covariance_accumulator.h"
 #include "core/estimation/degeneracy.h"
+#include "core/estimation/hidden_errors.h"
 #include "core/estimation/minimiser.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
@@ -171,6 +172,8 @@ class Estimator::Impl {
     } else {
       out_->status = EstimateStatus::kOk;
     }
+    out_->covariance += HiddenErrors(terms_, out_->cur_from_prev,
+                                     degeneracy.inverse, out_->covariance);
   }
 
   // What speaks against the motion, or empty.
