@@ -11,7 +11,7 @@ namespace rgbd_pose {
 namespace {
 
 // With fewer blocks their scatter is too uncertain to be used as a covariance.
-constexpr int kMinBlocksForScatter = 30;
+constexpr double kMinBlocksForScatter = 30.0;
 
 // Minimum share of the weight: with redescending losses the slope can vanish.
 constexpr double kMinSlope = 0.2;
@@ -100,15 +100,17 @@ MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
     if (!(sums.weight_p > 0.0)) continue;
     const double least_psi2 = kRounding * kRounding * sums.model_psi2;
     const bool by_hessian = term.is_whitened ||
-                            sums.blocks < kMinBlocksForScatter ||
+                            term.sums.blocks < kMinBlocksForScatter ||
                             sums.psi2 < least_psi2;
     const double psi2 = std::max(sums.psi2, least_psi2);
     // Six rows, less what priors and other groups determine, fit any motion.
     const double fitted = (inverse * group).trace();
     const double left = std::max(sums.weight_p - fitted, 0.0) + kModelRows;
     const MotionMatrix one_row = 1.0 / sums.weight_p * term.hessian;
+    const double blocks = term.sums.blocks;
     const MotionMatrix scatter =
-        by_hessian ? MotionMatrix(psi2 * one_row) : term.scatter;
+        by_hessian ? MotionMatrix(psi2 * one_row)
+                   : MotionMatrix(blocks / (blocks - 7.0) * term.scatter);
     B += sums.weight_p / left * (scatter + kModelRows * one_row);
     A += std::max(sums.slope_p / sums.weight_p, kMinSlope) * term.hessian;
   }
@@ -138,7 +140,7 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
       sums.psi2 += information * weight * weight * s / scale2;
       sums.weight_p += information * weight * p;
       sums.slope_p += information * (weight * p + 2.0 * s * rho[2] / factor);
-      ++sums.blocks;
+      sums.blocks += information * weight;
       const double limit = term.cost->is_whitened() ? ChiSquared99(p)
                                                     : term.cost->InlierLimit(k);
       // The squared sigma in the unit of the residuals is limit / ChiSquared99.

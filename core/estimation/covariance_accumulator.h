@@ -14,10 +14,10 @@ namespace rgbd_pose {
 // |r|^2 (r whitened, also by the estimated scale), p independent rows, and rho'
 // and rho'' of the loss at s.
 struct LossSums {
-  double psi2 = 0.0;      // rho'^2 s
-  double weight_p = 0.0;  // rho' p
-  double slope_p = 0.0;   // rho' p + 2 s rho''
-  int blocks = 0;
+  double psi2 = 0.0;        // rho'^2 s
+  double weight_p = 0.0;    // rho' p
+  double slope_p = 0.0;     // rho' p + 2 s rho''
+  double blocks = 0.0;      // each counts as its weight
   double model_psi2 = 0.0;  // psi2 of residuals of the noise model's size
 
   LossSums& operator+=(const LossSums& other) {
@@ -48,7 +48,9 @@ struct CovarianceTerm {
 //   (sum of psi^2 + d0) / (sum of weights - fitted + d0),
 //
 // or, for costs that do not whiten fully, of the scatter of their blocks in
-// place of psi^2. Sums are over a scale group; `fitted` is its share of the six
+// place of psi^2, times n / (n - 7): a matrix of six parameters from n samples
+// is noisy itself, by which chi^2 grows so much (Hotelling, Ann. Math. Stat. 2,
+// 1931). Sums are over a scale group; `fitted` is its share of the six
 // parameters. The noise model, at its estimated scale, counts as d0 = 6 rows
 // (the moderated variance of Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004): the
 // residuals of few matches are small because the motion is fitted to them.

@@ -89,15 +89,16 @@ TEST(RobustCovarianceTest, OfACostThatIsNotWhitenedByItsScatter) {
   term.scatter = SomeHessian(7.0);
   const double slope = 180.0 / 240.0;
   const MotionMatrix inverse = term.hessian.inverse();
-  const MotionMatrix scatter =
-      240.0 / 240.0 * (term.scatter + 6.0 / 240.0 * term.hessian);
-  ExpectNear(Covariance({term}),
-             1.0 / (slope * slope) * inverse * scatter * inverse);
+  const auto from_blocks = [&](double blocks) -> MotionMatrix {
+    const MotionMatrix scatter =
+        blocks / (blocks - 7.0) * term.scatter + 6.0 / 240.0 * term.hessian;
+    return 1.0 / (slope * slope) * inverse * scatter * inverse;
+  };
+  ExpectNear(Covariance({term}), from_blocks(100.0));
   // The scatter of fewer than 30 blocks is too uncertain to be used.
-  term.sums.blocks = 30;
-  ExpectNear(Covariance({term}),
-             1.0 / (slope * slope) * inverse * scatter * inverse);
-  term.sums.blocks = 29;
+  term.sums.blocks = 30.0;
+  ExpectNear(Covariance({term}), from_blocks(30.0));
+  term.sums.blocks = 29.9;
   ExpectNear(Covariance({term}),
              Spread(270.0, 240.0) / (slope * slope) * inverse);
 }
