@@ -14,29 +14,30 @@ namespace {
 
 constexpr size_t kMostBlocks = 100;
 
+// With a lower leverage no error is hidden that moves the motion far.
+constexpr double kShortLever = 0.4;
+
 // Chi^2 of six degrees of freedom that is as rare as five sigmas.
 constexpr double kFiveSigmas = 40.9;
 
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-// Of all residuals, block by block, by [omega C]. Central differences: only the
-// lengths of levers matter, and costs give no derivatives of single blocks.
+// Of all residuals, block by block, by [omega C]. Differences: only the lengths
+// of levers matter, and costs give no derivatives of single blocks.
 Jacobian ResidualJacobian(const MotionCost& cost, const Rigid3d& motion) {
   constexpr double kStep = 1e-6;  // rad and m
   const LinearizationPoint origin(motion);
-  std::vector<double> above, below;
-  Jacobian jacobian;
+  std::vector<double> here, moved;
+  cost.Residuals(DerivativesAt(motion), &here);
+  const auto rows = static_cast<Eigen::Index>(here.size());
+  Jacobian jacobian(rows, 6);
   for (int column = 0; column < 6; ++column) {
     MotionVector x = MotionVector::Zero();
     x[column] = kStep;
-    cost.Residuals(origin.DerivativesAt(x.data()), &above);
-    x[column] = -kStep;
-    cost.Residuals(origin.DerivativesAt(x.data()), &below);
-    const auto rows = static_cast<Eigen::Index>(above.size());
-    jacobian.resize(rows, 6);
-    jacobian.col(column) = (Eigen::Map<Eigen::VectorXd>(above.data(), rows) -
-                            Eigen::Map<Eigen::VectorXd>(below.data(), rows)) /
-                           (2.0 * kStep);
+    cost.Residuals(origin.DerivativesAt(x.data()), &moved);
+    jacobian.col(column) = (Eigen::Map<Eigen::VectorXd>(moved.data(), rows) -
+                            Eigen::Map<Eigen::VectorXd>(here.data(), rows)) /
+                           kStep;
   }
   return jacobian;
 }
@@ -46,11 +47,12 @@ double SquaredLimit(const RobustTerm& term, size_t k) {
   return term.scale * term.scale * term.cost->InlierLimit(static_cast<int>(k));
 }
 
-// Whether wrong matches of this cost may hide: it is over few matches.
+// Whether wrong matches of this cost may hide. Three rows at least hardly ever
+// agree by chance.
 bool MayHideErrors(const RobustTerm& term) {
   const std::vector<int>& matches = term.cost->matches();
   return term.has_scale() && !matches.empty() && matches.front() >= 0 &&
-         matches.size() <= kMostBlocks;
+         matches.size() <= kMostBlocks && term.cost->degrees_of_freedom() < 3;
 }
 
 MotionMatrix HiddenErrorsOf(const RobustTerm& term,
@@ -61,8 +63,8 @@ MotionMatrix HiddenErrorsOf(const RobustTerm& term,
   std::vector<double> beyond;  // norms of blocks that disagree, in limits
   for (size_t k = 0; k < term.norms.size(); ++k) {
     const double limit = SquaredLimit(term, k);
-    if (term.norms[k] > limit)
-      beyond.push_back(std::sqrt(term.norms[k] / limit));
+    if (term.norms[k] <= limit) continue;
+    beyond.push_back(std::sqrt(term.norms[k] / limit));
   }
   const size_t agreeing = term.norms.size() - beyond.size();
   if (beyond.empty() || agreeing == 0) return sum;
@@ -75,7 +77,9 @@ MotionMatrix HiddenErrorsOf(const RobustTerm& term,
     double rho[3];
     term.scaled.Evaluate(term.norms[k], rho);
     const auto J = all.middleRows(static_cast<Eigen::Index>(k) * rows, rows);
-    const auto leverage = EigenOf(rho[1] * J * inverse * J.transpose());
+    const SmallMatrix share = rho[1] * J * inverse * J.transpose();
+    if (share.trace() < kShortLever) continue;
+    const auto leverage = EigenOf(share);
     const double extent = ExtentOfWrong(median, term.cost->degrees()[k]);
     const double unseen = 1.0 - leverage.eigenvalues()[rows - 1];
     const double stretch = 1.0 / std::max(unseen, 1.0 / extent);

@@ -19,8 +19,9 @@ namespace rgbd_pose {
 //
 // as residuals of wrong matches extend to R limits (see FalseAlarms), and must
 // be within 1 / (1 - h) limits along one direction, and within one along the
-// others. Nothing is added if all matches agree, or for more than a hundred
-// blocks, of which none has such a lever. `inverse` is that of the Hessian.
+// others. Nothing is added if all matches agree, for blocks of three or more
+// rows, which hardly ever agree by chance, or for more than a hundred blocks,
+// of which none has such a lever. `inverse` is that of the Hessian.
 MotionMatrix HiddenErrors(const RobustProblem& problem,
                           const Rigid3d& cur_from_prev,
                           const MotionMatrix& inverse,
