@@ -63,9 +63,10 @@ const Keys kOfOtherPrograms = {
     "Camera.fps", "Camera.bf", "Camera.RGB", "Camera.newWidth",
     "Camera.newHeight", "Camera.imageScale", "Camera1.overlappingBegin",
     "Camera1.overlappingEnd", "Camera.lappingBegin", "Camera.lappingEnd",
-    "Camera2.", "File.version", "IMU.", "LEFT.", "loopClosing", "ORBextractor.",
-    "RIGHT.", "Stereo.", "System.", "T_b_c1", "T_c1_c2", "Tbc", "ThDepth",
-    "ThFarPoints", "Tlr", "Viewer.",
+    "Camera2.", "File.version", "IMU.fastInit", "IMU.Frequency",
+    "IMU.InsertKFsWhenLost", "LEFT.", "loopClosing", "ORBextractor.", "RIGHT.",
+    "Stereo.", "System.", "T_b_c1", "T_c1_c2", "ThDepth", "ThFarPoints", "Tlr",
+    "Viewer.",
     // camera_info of ROS
     "binning_x", "binning_y", "camera_name", "frame_id", "header",
     "projection_matrix", "rectification_matrix", "roi",

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <iterator>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -13,24 +14,29 @@ namespace rgbd_pose {
 namespace {
 
 struct NoiseKey {
-  const char* name;
+  const char* name;  // of Kalibr
+  const char* in_orb_slam3;
   double ImuNoise::*value;
   double most;  // larger values are those of other units
 };
 constexpr NoiseKey kNoiseKeys[] = {
-    {"gyroscope_noise_density", &ImuNoise::gyro_density, 1.0},
-    {"gyroscope_random_walk", &ImuNoise::gyro_walk, 1.0},
-    {"accelerometer_noise_density", &ImuNoise::accel_density, 10.0},
-    {"accelerometer_random_walk", &ImuNoise::accel_walk, 10.0}};
+    {"gyroscope_noise_density", "IMU.NoiseGyro", &ImuNoise::gyro_density, 1.0},
+    {"gyroscope_random_walk", "IMU.GyroWalk", &ImuNoise::gyro_walk, 1.0},
+    {"accelerometer_noise_density", "IMU.NoiseAcc", &ImuNoise::accel_density,
+     10.0},
+    {"accelerometer_random_walk", "IMU.AccWalk", &ImuNoise::accel_walk, 10.0}};
 
 constexpr char kCamFromImu[] = "T_cam_imu";
-constexpr char kImuFromCam[] = "T_imu_cam";
+// Of OpenVINS, and of ORB-SLAM3's newer and older files.
+constexpr const char* kImuFromCam[] = {"T_imu_cam", "IMU.T_b_c1", "Tbc"};
 constexpr char kDelay[] = "timeshift_cam_imu";
 
 std::optional<Rigid3d> ReadMounting(const YamlSection& section) {
   if (section.Has(kCamFromImu)) return section.RigidMotion(kCamFromImu);
-  if (!section.Has(kImuFromCam)) return std::nullopt;
-  return section.RigidMotion(kImuFromCam).Inverse();
+  for (const char* key : kImuFromCam) {
+    if (section.Has(key)) return section.RigidMotion(key).Inverse();
+  }
+  return std::nullopt;
 }
 
 std::optional<double> ReadDelay(const YamlSection& section) {
@@ -44,18 +50,23 @@ std::optional<double> ReadDelay(const YamlSection& section) {
 }
 
 std::optional<ImuNoise> ReadNoise(const YamlSection& section) {
-  bool has_any = false;
-  for (const NoiseKey& key : kNoiseKeys) has_any |= section.Has(key.name);
-  if (!has_any) return std::nullopt;
-  ImuNoise noise;
-  for (const auto& [name, value, most] : kNoiseKeys) {
-    noise.*value = section.Number(name);
-    if (!(noise.*value > 0.0) || noise.*value > most) {
-      section.Fail(
-          name, Format("must be above 0 and at most %g, in rad and m", most));
+  for (const auto name : {&NoiseKey::name, &NoiseKey::in_orb_slam3}) {
+    bool has_any = false;
+    for (const NoiseKey& key : kNoiseKeys) has_any |= section.Has(key.*name);
+    if (!has_any) continue;
+    ImuNoise noise;
+    for (const NoiseKey& key : kNoiseKeys) {
+      const double value = section.Number(key.*name);
+      if (!(value > 0.0) || value > key.most) {
+        section.Fail(
+            key.*name,
+            Format("must be above 0 and at most %g, in rad and m", key.most));
+      }
+      noise.*key.value = value;
     }
+    return noise;
   }
-  return noise;
+  return std::nullopt;
 }
 
 ImuCalibration ReadSection(const YamlSection& section) {
@@ -65,8 +76,10 @@ ImuCalibration ReadSection(const YamlSection& section) {
 }  // namespace
 
 std::vector<std::string> ImuKeys() {
-  std::vector<std::string> keys = {kCamFromImu, kImuFromCam, kDelay};
+  std::vector<std::string> keys = {kCamFromImu, kDelay};
   for (const NoiseKey& key : kNoiseKeys) keys.push_back(key.name);
+  keys.insert(keys.end(), std::begin(kImuFromCam), std::end(kImuFromCam));
+  for (const NoiseKey& key : kNoiseKeys) keys.push_back(key.in_orb_slam3);
   return keys;
 }
 
@@ -86,7 +99,7 @@ ImuCalibration ReadImuCalibrationFile(const std::string& path) {
   if (!calibration.IsEmpty()) return calibration;
   throw InputError(path +
                    ": says nothing on an inertial sensor; keys are those of "
-                   "Kalibr: " +
+                   "Kalibr and ORB-SLAM3: " +
                    Join(ImuKeys()));
 }
 

@@ -10,12 +10,14 @@ namespace rgbd_pose {
 
 // The keys of an inertial sensor, as Kalibr names them:
 //
-//   T_cam_imu               cam_from_imu, a 4 x 4 matrix, m (OpenVINS'
-//                           T_imu_cam, its inverse, is read as well)
+//   T_cam_imu               cam_from_imu, a 4 x 4 matrix, m (its inverse is
+//                           read as well: T_imu_cam of OpenVINS, and
+//                           IMU.T_b_c1 or Tbc of ORB-SLAM3)
 //   timeshift_cam_imu       delay_s
 //   gyroscope_noise_density, gyroscope_random_walk,
 //   accelerometer_noise_density, accelerometer_random_walk     ImuNoise, all
-//   four or none
+//   four or none; in ORB-SLAM3's files IMU.NoiseGyro, IMU.GyroWalk,
+//   IMU.NoiseAcc, IMU.AccWalk
 std::vector<std::string> ImuKeys();
 
 // Reads these keys from the top level of a file, from its section imu0 and, the

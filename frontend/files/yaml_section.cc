@@ -75,6 +75,7 @@ std::vector<double> YamlSection::Numbers(
 
 std::vector<double> YamlSection::Matrix(const std::string& key) const {
   const YAML::Node list = Find(key);
+  if (list.IsMap()) return Child(key).Numbers("data", {16});
   if (list.IsSequence() && list.size() == 16) return Numbers(key, {16});
   std::vector<double> numbers;
   for (size_t i = 0; list.IsSequence() && i < list.size(); ++i) {

@@ -34,7 +34,8 @@ class YamlSection {
   std::vector<double> Numbers(const std::string& key,
                               const std::vector<size_t>& lengths) const;
 
-  // A 4 x 4 matrix, row by row: a list of 4 lists of numbers, or of 16 numbers.
+  // A 4 x 4 matrix, row by row: a list of 4 lists of numbers, or of 16 numbers,
+  // or OpenCV's section with such a list as its `data`.
   std::vector<double> Matrix(const std::string& key) const;
 
   // A rigid motion as such a matrix.

@@ -94,6 +94,44 @@ TEST_F(ImuCalibrationFileTest, ReadsTheInverseThatOpenVinsHas) {
   ExpectMounting(Read("cam0:\n  T_imu_cam: " + inverse));
 }
 
+// Settings of ORB-SLAM3 have the camera in the axes of the sensor.
+TEST_F(ImuCalibrationFileTest, ReadsTheSettingsOfOrbSlam3) {
+  for (const std::string key : {"IMU.T_b_c1", "Tbc"}) {
+    const std::string text =
+        kOrbSlam3 + key +
+        ": !!opencv-matrix\n   rows: 4\n   cols: 4\n   dt: f\n"
+        "   data: [0, 1, 0, -0.2,\n          -1, 0, 0, 0.1,\n"
+        "          0, 0, 1, -0.3,\n          0, 0, 0, 1]\n"
+        "IMU.InsertKFsWhenLost: 0\n"
+        "IMU.NoiseGyro: 1e-3 # rad/s^0.5\n"
+        "IMU.NoiseAcc: 1e-2\n"
+        "IMU.GyroWalk: 1e-6\n"
+        "IMU.AccWalk: 1e-4\n"
+        "IMU.Frequency: 200.0\n";
+    const CameraSetup camera =
+        ReadCameraFile(folder_.Write("camera.yaml", text), "cam0");
+    EXPECT_EQ(camera.remark, "");
+    for (const ImuCalibration& known : {camera.imu, Read(text)}) {
+      ExpectMounting(known);
+      ASSERT_TRUE(known.noise.has_value());
+      EXPECT_EQ(known.noise->gyro_density, 1e-3);
+      EXPECT_EQ(known.noise->accel_density, 1e-2);
+      EXPECT_EQ(known.noise->gyro_walk, 1e-6);
+      EXPECT_EQ(known.noise->accel_walk, 1e-4);
+    }
+  }
+}
+
+TEST_F(ImuCalibrationFileTest, MistakesInSettingsOfOrbSlam3AreSaid) {
+  const std::string path = folder_.Write("imu.yaml", "IMU.NoiseGiro: 1e-3\n");
+  ExpectInputError([&] { ReadImuCalibrationFile(path); },
+                   {path + ":1: IMU.NoiseGiro", "did you mean IMU.NoiseGyro?"});
+  const std::string no_walk =
+      folder_.Write("walk.yaml", "IMU.NoiseGyro: 1e-3\nIMU.NoiseAcc: 0.01\n");
+  ExpectInputError([&] { ReadImuCalibrationFile(no_walk); },
+                   {no_walk, "IMU.GyroWalk"});
+}
+
 TEST_F(ImuCalibrationFileTest, CameraFilesOfEveryLayoutMayHaveTheKeys) {
   for (const char* layout : {kOrbSlam2, kOrbSlam3, kRos, kKalibr}) {
     const CameraSetup camera = ReadCameraFile(
