@@ -46,6 +46,11 @@ struct FinishedRun {
   std::vector<int> segments;
 
   int lost = 0;  // number of frames without a pose
+
+  // Turns the world into the axes of a level camera, x right, y down, z ahead,
+  // for viewers and ROS. The identity if gravity is not known: the first camera
+  // is taken for level.
+  Rigid3d level_from_world;
 };
 
 // User options of an export. Each format uses the options that concern it.

@@ -1,11 +1,17 @@
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "apps/export/export_format.h"
 #include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
+#include "core/util/text_file.h"
 #include "frontend/settings/settings.h"
 #include "frontend/sources/frame_stream.h"
 
@@ -42,6 +48,34 @@ bool IsOneSegment(const std::string& keyframes_file) {
   const std::vector<std::string> words =
       CsvTable::Read(keyframes_file).Words("segment");
   return std::set<std::string>(words.begin(), words.end()).size() == 1;
+}
+
+// As FinishedRun::level_from_world, from the direction of up in the world.
+Rigid3d LevelFromWorld(const Eigen::Vector3d& up) {
+  const Eigen::Vector3d down = -up.normalized();
+  // Ahead is z, the optical axis of the first camera; in an upright world y.
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ();
+  constexpr double kNearlyVertical = 0.9;
+  if (std::abs(ahead.dot(down)) > kNearlyVertical) {
+    ahead = Eigen::Vector3d::UnitY();
+  }
+  ahead = (ahead - ahead.dot(down) * down).normalized();
+  Eigen::Matrix3d rows;
+  rows << down.cross(ahead).transpose(), down.transpose(), ahead.transpose();
+  return Rigid3d(Eigen::Quaterniond(rows), Eigen::Vector3d::Zero());
+}
+
+// What metrics.json says of gravity in the world of a segment; nothing if it is
+// not known there.
+std::optional<Eigen::Vector3d> ReadUp(const fs::path& metrics, int segment) {
+  if (!fs::exists(metrics)) return std::nullopt;
+  const auto json = nlohmann::json::parse(ReadTextFile(metrics), nullptr,
+                                          /*allow_exceptions=*/false);
+  const auto gravity = json.find("gravity");
+  if (gravity == json.end() || !gravity->contains("up")) return std::nullopt;
+  if (gravity->value("segment", 0) != segment) return std::nullopt;
+  const auto up = gravity->at("up").get<std::vector<double>>();
+  return Eigen::Vector3d(up.at(0), up.at(1), up.at(2));
 }
 
 // The frames of a source at the given times.
@@ -110,6 +144,9 @@ FinishedRun::FinishedRun(const std::string& run_folder,
                      std::to_string(trajectory.size()) + " poses, but " +
                      std::to_string(frames.size()) +
                      " tracked frames in frames.csv; repeat the run");
+  }
+  if (const auto up = ReadUp(path / "metrics.json", segments[0])) {
+    level_from_world = LevelFromWorld(*up);
   }
 }
 

@@ -82,7 +82,7 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
         fusion.Add(frame, run.trajectory[view].world_from_cam);
       });
   const TriangleMesh mesh = fusion.Mesh();
-  WriteMesh(options.output, mesh);
+  WriteMesh(options.output, mesh, run.level_from_world);
   ShowInPage(run.folder, kMeshPreviewFile,
              MeshPreview(ThinMesh(mesh, options.voxel)), mesh.triangles.size(),
              views.size(), options);

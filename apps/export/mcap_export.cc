@@ -154,8 +154,9 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
     file.Write(topic, time, message.dump());
   };
   const double start = path[0].timestamp;
-  write("/tf_static", "FrameTransform", start,
-        FrameTransform(kMap, kWorld, UprightFromWorld()));
+  write(
+      "/tf_static", "FrameTransform", start,
+      FrameTransform(kMap, kWorld, UprightFromLevel() * run.level_from_world));
   write("/path", "PosesInFrame", start, PosesInFrame(path));
   const Trajectory keyframes = KeyframesOf(run, path);
   if (!keyframes.empty()) {

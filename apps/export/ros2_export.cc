@@ -32,7 +32,7 @@ std::string ExportRos2(const FinishedRun& run, const ExportOptions& options) {
 
   // REP 105: a map may jump, odometry does not.
   const std::string parent = HasMap(run) ? "map" : "odom";
-  Ros2Writer writer(parent);
+  Ros2Writer writer(parent, run.level_from_world);
   writer.WritePath(path[0].timestamp, path);
   for (const CameraState& state : StatesOf(run, path)) {
     writer.WriteState(state);

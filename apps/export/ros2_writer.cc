@@ -8,22 +8,23 @@
 
 namespace rgbd_pose {
 
-Ros2Writer::Ros2Writer(std::string parent)
-    : parent_(std::move(parent)), file_("ros2", "cdr") {}
+Ros2Writer::Ros2Writer(std::string parent, const Rigid3d& level_from_world)
+    : parent_(std::move(parent)),
+      parent_from_world_(UprightFromLevel() * level_from_world),
+      file_("ros2", "cdr") {}
 
 void Ros2Writer::WritePath(double time, const Trajectory& path) {
   Write("/path", "nav_msgs/Path", time,
-        PathMessage(time, path, parent_, UprightFromWorld()));
+        PathMessage(time, path, parent_, parent_from_world_));
 }
 
 void Ros2Writer::WriteState(const CameraState& state) {
   const double time = state.pose.timestamp;
-  const Rigid3d parent_from_world = UprightFromWorld();
   Write("/tf", "tf2_msgs/TFMessage", time,
         TransformMessage(time, parent_,
-                         parent_from_world * state.pose.world_from_cam));
+                         parent_from_world_ * state.pose.world_from_cam));
   Write("/odom", "nav_msgs/Odometry", time,
-        OdometryMessage(state, parent_, parent_from_world));
+        OdometryMessage(state, parent_, parent_from_world_));
 }
 
 void Ros2Writer::WriteImages(double time, const Camera& camera,

@@ -11,8 +11,10 @@ namespace rgbd_pose {
 // not decrease from call to call.
 class Ros2Writer {
  public:
-  // `parent`: the frame of poses, map or odom.
-  explicit Ros2Writer(std::string parent);
+  // `parent`: the frame of poses, map or odom. `level_from_world`: see
+  // FinishedRun.
+  explicit Ros2Writer(std::string parent,
+                      const Rigid3d& level_from_world = Rigid3d());
 
   void WritePath(double time, const Trajectory& path);
   // The transform and the odometry of a pose.
@@ -29,6 +31,7 @@ class Ros2Writer {
              const std::string& message);
 
   const std::string parent_;
+  const Rigid3d parent_from_world_;
   McapWriter file_;
 };
 

@@ -94,7 +94,7 @@ std::string LeftOut(size_t poses) {
       poses);
 }
 
-Rigid3d UprightFromWorld() {
+Rigid3d UprightFromLevel() {
   return Rigid3d({0.5, -0.5, 0.5, -0.5}, {0.0, 0.0, 0.0});
 }
 

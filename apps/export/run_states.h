@@ -23,9 +23,9 @@ double RosTime(double seconds);
 // not of the first segment; empty if none.
 std::string LeftOut(size_t poses);
 
-// With x forward, y left and z up at the first camera pose, as ROS and viewers
-// expect it.
-Rigid3d UprightFromWorld();
+// Turns the axes of a level camera (x right, y down, z ahead) into those that
+// ROS and viewers expect: x forward, y left, z up.
+Rigid3d UprightFromLevel();
 
 // For the poses of TimedPath. The covariance of a keyframe of the map is that
 // of the map; other covariances are composed along the motions of edges.csv.

@@ -12,10 +12,15 @@
 namespace rgbd_pose {
 namespace {
 
-using Formatter = std::string (*)(const TriangleMesh& mesh);
+using Formatter = std::string (*)(const TriangleMesh& mesh,
+                                  const Rigid3d& level_from_world);
+
+std::string FormatPly(const TriangleMesh& mesh, const Rigid3d&) {
+  return FormatMeshPly(mesh);
+}
 
 // The function that writes each format, by file extension.
-constexpr Named<Formatter> kFormats[] = {{".ply", FormatMeshPly},
+constexpr Named<Formatter> kFormats[] = {{".ply", FormatPly},
                                          {".glb", FormatGlb}};
 
 Formatter FormatOf(const std::string& path) {
@@ -106,7 +111,17 @@ void AppendChunk(const std::string& type, const std::string& content,
 
 }  // namespace
 
-std::string FormatGlb(const TriangleMesh& mesh) {
+std::string FormatGlb(const TriangleMesh& mesh,
+                      const Rigid3d& level_from_world) {
+  if (!level_from_world.IsIdentity()) {
+    const Eigen::Matrix3f turn =
+        level_from_world.rotation.toRotationMatrix().cast<float>();
+    TriangleMesh level = mesh;
+    for (ColoredPoint& point : level.vertices) {
+      point.position = turn * point.position;
+    }
+    return FormatGlb(level);
+  }
   const std::string binary =
       mesh.triangles.empty() ? std::string() : Binary(mesh);
   std::string json = Json(mesh, binary.size());
@@ -122,8 +137,9 @@ std::string FormatGlb(const TriangleMesh& mesh) {
   return bytes;
 }
 
-void WriteMesh(const std::string& path, const TriangleMesh& mesh) {
-  WriteFileAtomically(path, FormatOf(path)(mesh));
+void WriteMesh(const std::string& path, const TriangleMesh& mesh,
+               const Rigid3d& level_from_world) {
+  WriteFileAtomically(path, FormatOf(path)(mesh, level_from_world));
 }
 
 void RequireCloudFile(const std::string& path) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/rigid3.h"
+
 namespace rgbd_pose {
 
 // A point of a map with its colour.
@@ -24,7 +26,9 @@ struct TriangleMesh {
 
 // Writes a mesh completely or not at all, in the format given by the extension,
 // .ply or .glb. Throws InputError on failure and for another extension.
-void WriteMesh(const std::string& path, const TriangleMesh& mesh);
+// For .glb, see FormatGlb; .ply has the axes of the world.
+void WriteMesh(const std::string& path, const TriangleMesh& mesh,
+               const Rigid3d& level_from_world = Rigid3d());
 
 // Throws InputError if WriteMesh would; to be called before long computations.
 void RequireMeshFile(const std::string& path);
@@ -33,9 +37,11 @@ void RequireMeshFile(const std::string& path);
 void RequireCloudFile(const std::string& path);
 
 // A mesh as a binary glTF 2.0 file (.glb) with unlit colours, as images contain
-// the light already. In glTF y points up and z towards the viewer. The world,
-// in which y of the first camera points down, is therefore rotated around x.
-std::string FormatGlb(const TriangleMesh& mesh);
+// the light already. In glTF y points up and z towards the viewer.
+// `level_from_world` turns the world so that y points down and z ahead, as of a
+// level camera; the result is rotated around x.
+std::string FormatGlb(const TriangleMesh& mesh,
+                      const Rigid3d& level_from_world = Rigid3d());
 
 // A mesh as a PLY file: binary little-endian, per vertex x y z (float, metres)
 // and red green blue (uchar), per face three vertex_indices (int). (G. Turk,

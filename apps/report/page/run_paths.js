@@ -60,13 +60,14 @@ function pathTraces(data, axes, type, line) {
 }
 
 // The downward direction in the world of the page, used to show the path
-// upright. Without a ground truth, the world is the first camera: x right, y
+// upright. If gravity is not known, it is that of the first camera: x right, y
 // down, z forward.
 function downVector(data) {
-  const e = data.metrics.evaluation;
-  if (!data.path.true_x || !e || !e.truth_from_estimate) return [0, 1, 0];
-  const [x, y, z, w] = e.truth_from_estimate.quaternion_xyzw;
-  return [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];
+  const gravity = data.metrics.gravity;
+  const down = gravity && gravity.up ? gravity.up.map(value => -value) : [0, 1, 0];
+  const turn = truthFromMap(data);
+  const origin = turn([0, 0, 0]);
+  return turn(down).map((value, k) => value - origin[k]);
 }
 
 function hasWebGl() {

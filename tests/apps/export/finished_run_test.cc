@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "apps/export/export_format.h"
 #include "tests/support/temp_folder.h"
 
@@ -30,6 +32,42 @@ TEST(FinishedRunTest, ACloudHasTheDepthNoiseThatTrackingHad) {
   EXPECT_DOUBLE_EQ(NoiseOfCloudAt4M(""), kinect);
   EXPECT_DOUBLE_EQ(NoiseOfCloudAt4M("--depth_noise=camera\n"), kinect);
   EXPECT_DOUBLE_EQ(NoiseOfCloudAt4M("--depth_noise=constant\n"), 0.005);
+}
+
+// Down and ahead of a level camera, in the world of a run with these metrics.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> LevelIn(
+    const std::string& metrics) {
+  const TempFolder folder;
+  folder.Write("run/frames.csv", "status,segment\nok,2\n");
+  folder.Write("run/trajectory.txt", "1.0 0 0 0 0 0 0 1\n");
+  folder.Write("run/config.flags", "# Input\n--dataset=none\n");
+  if (!metrics.empty()) folder.Write("run/metrics.json", metrics);
+  const FinishedRun run(folder / "run");
+  const Rigid3d world_from_level = run.level_from_world.Inverse();
+  return {world_from_level * Eigen::Vector3d::UnitY(),
+          world_from_level * Eigen::Vector3d::UnitZ()};
+}
+
+TEST(FinishedRunTest, IsLevelByGravityOrElseByItsFirstCamera) {
+  const auto expect = [](const std::string& metrics,
+                         const Eigen::Vector3d& down,
+                         const Eigen::Vector3d& ahead) {
+    const auto [is_down, is_ahead] = LevelIn(metrics);
+    EXPECT_TRUE(is_down.isApprox(down, 1e-12)) << is_down.transpose();
+    EXPECT_TRUE(is_ahead.isApprox(ahead, 1e-12)) << is_ahead.transpose();
+  };
+  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  for (const char* metrics :
+       {"", "{}", R"({"gravity": {"refusal": "no samples", "means": 0}})",
+        R"({"gravity": {"up": [0, 0, 1], "segment": 1}})", "{"}) {
+    expect(metrics, y, z);
+  }
+  // An upright world.
+  expect(R"({"gravity": {"up": [0, 0, 1], "segment": 2}})", -z, y);
+  // A first camera that looks down by asin(0.6).
+  expect(R"({"gravity": {"up": [0, -0.8, -0.6], "segment": 2}})", {0, 0.8, 0.6},
+         {0, -0.6, 0.8});
 }
 
 }  // namespace

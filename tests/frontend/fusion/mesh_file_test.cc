@@ -46,6 +46,25 @@ TEST(PlyWriterTest, WritesAFileAsAWhole) {
   EXPECT_EQ(ReadTextFile(folder / "empty.ply"), FormatMeshPly({}));
 }
 
+// In an upright world z points up and y ahead.
+TEST(GlbTest, AnUprightWorldIsTheSameSceneAsALevelOne) {
+  Eigen::Matrix3d level_from_upright;
+  level_from_upright << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  TriangleMesh level, upright;
+  for (const Eigen::Vector3f& p :
+       {Eigen::Vector3f(1, 2, 3), Eigen::Vector3f(-4, 5, 6),
+        Eigen::Vector3f(7, -8, 9)}) {
+    level.vertices.push_back({p, {}});
+    upright.vertices.push_back(
+        {level_from_upright.transpose().cast<float>() * p, {}});
+  }
+  level.triangles = upright.triangles = {{0, 1, 2}};
+  EXPECT_NE(FormatGlb(upright), FormatGlb(level));
+  EXPECT_EQ(FormatGlb(upright, Rigid3d(Eigen::Quaterniond(level_from_upright),
+                                       {0, 0, 0})),
+            FormatGlb(level));
+}
+
 TEST(PlyWriterTest, NamesThePathThatCannotBeWritten) {
   const TempFolder folder;
   const std::string path = folder / "missing/cloud.ply";
