@@ -6,25 +6,49 @@
 
 namespace rgbd_pose {
 
-// The velocity of a camera in its own axes.
+// The velocity of a camera in its own axes at some moment, and how fast it
+// changes around it. The accelerations are 0 unless they were measured.
 struct Twist {
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  // rad/s
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   // m/s
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();               // rad/s
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();                // m/s
+  Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  // rad/s^2
+  Eigen::Vector3d linear_acceleration = Eigen::Vector3d::Zero();   // m/s^2
+
+  // The velocity `seconds` later (negative: earlier).
+  Twist After(double seconds) const;
+
+  // The constant velocity that makes the same motion in `seconds`.
+  Twist Mean(double seconds) const;
 
   // later_from_earlier over a time span in seconds (negative: backwards), for
   // fractions of a second: the translation is exact to first order.
   Rigid3d MotionDuring(double seconds) const;
 
+  // earlier_from_later over the same span, as MotionDuring.
+  Rigid3d MotionBack(double seconds) const;
+
   // A static point (camera axes, m) as seen after `seconds`, to second order.
   template <typename T>
   void MovePoint(const T* point, const T& seconds, T* moved) const {
-    const Eigen::Vector3d& w = angular;
-    T a[3];
-    PointVelocity(point, a);
     const T half = 0.5 * seconds;
+    T w[3], v[3], a[3];  // the mean velocity until then; that of the point
+    for (int i = 0; i < 3; ++i) {
+      w[i] = angular[i] + half * angular_acceleration[i];
+      v[i] = linear[i] + half * linear_acceleration[i];
+    }
+    a[0] = w[2] * point[1] - w[1] * point[2] - v[0];
+    a[1] = w[0] * point[2] - w[2] * point[0] - v[1];
+    a[2] = w[1] * point[0] - w[0] * point[1] - v[2];
     moved[0] = point[0] + seconds * (a[0] - half * (w[1] * a[2] - w[2] * a[1]));
     moved[1] = point[1] + seconds * (a[1] - half * (w[2] * a[0] - w[0] * a[2]));
     moved[2] = point[2] + seconds * (a[2] - half * (w[0] * a[1] - w[1] * a[0]));
+  }
+
+  // Where a point was that is seen after `seconds`. With accelerations this is
+  // not MovedPoint with negative seconds.
+  Eigen::Vector3d MovedBack(const Eigen::Vector3d& point,
+                            double seconds) const {
+    return Mean(seconds).MovedPoint(point, -seconds);
   }
 
   // The velocity (m/s) of a static point in the camera's axes.

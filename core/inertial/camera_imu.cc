@@ -144,7 +144,7 @@ std::optional<CameraRate> CameraImu::Rate(double from, double to) const {
   // The halves have twice the rate per turn, and are half an interval apart.
   return CameraRate{-per_second * RotationVector(turn->cur_from_prev),
                     per_second * per_second * turn->covariance,
-                    4.0 * per_second * per_second * change.norm()};
+                    -4.0 * per_second * per_second * change};
 }
 
 void CameraImu::Learn(double from, double to, const CameraTurn& seen) {

@@ -27,7 +27,8 @@ struct CameraTurn {
 struct CameraRate {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();     // on average, rad/s
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of `angular`
-  double acceleration = 0.0;  // by how much the rate changes, rad/s^2
+  // By how much the rate changes, rad/s^2.
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
 };
 
 // A gyroscope, with an accelerometer, beside a camera. While the camera is

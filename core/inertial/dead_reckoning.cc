@@ -70,9 +70,13 @@ Row RowOf(const Sums& sums, const Vector3d& position) {
 
 }  // namespace
 
-void DeadReckoning::Add(double stamp, const Rigid3d& world_from_cam) {
-  path_.push_back({stamp, world_from_cam});
+void DeadReckoning::Add(const CameraImu& imu, double stamp,
+                        const Rigid3d& world_from_cam) {
+  Pose pose = {stamp, world_from_cam, std::nullopt};
+  if (!path_.empty()) pose.step = imu.Motion(path_.back().stamp, stamp);
+  path_.push_back(pose);
   while (stamp - path_.front().stamp > kWindow) path_.pop_front();
+  solution_ = Solve(imu.position());
 }
 
 std::optional<double> DeadReckoning::needed_from() const {
@@ -81,16 +85,10 @@ std::optional<double> DeadReckoning::needed_from() const {
 }
 
 std::optional<DeadReckoning::Solution> DeadReckoning::Solve(
-    const CameraImu& imu) const {
+    const Vector3d& arm) const {
   // The part of the path for which there are samples.
-  std::vector<PreintegratedMotion> steps;
   size_t first = path_.size() - 1;
-  for (; first > 0; --first) {
-    const std::optional<PreintegratedMotion> step =
-        imu.Motion(path_[first - 1].stamp, path_[first].stamp);
-    if (!step.has_value()) break;
-    steps.push_back(*step);
-  }
+  while (first > 0 && path_[first].step.has_value()) --first;
   if (path_.size() - first < kFewestPoses ||
       path_.back().stamp - path_[first].stamp < kShortest) {
     return std::nullopt;
@@ -99,9 +97,9 @@ std::optional<DeadReckoning::Solution> DeadReckoning::Solve(
   std::vector<Row> rows;
   for (size_t i = first; i < path_.size(); ++i) {
     const Rigid3d& pose = path_[i].world_from_cam;
-    rows.push_back(RowOf(sums, pose * imu.position()));
+    rows.push_back(RowOf(sums, pose * arm));
     if (i + 1 == path_.size()) break;
-    sums.Add(pose.rotation.toRotationMatrix(), steps[path_.size() - 2 - i]);
+    sums.Add(pose.rotation.toRotationMatrix(), *path_[i + 1].step);
   }
   Start x = Start::Zero();
   x.segment<3>(6) = -kGravity * sums.v.normalized();
@@ -145,18 +143,44 @@ std::optional<DeadReckoning::Solution> DeadReckoning::Solve(
   return solution;
 }
 
-std::optional<DeadReckoning::Motion> DeadReckoning::Predict(
-    const CameraImu& imu, double stamp) const {
-  if (path_.empty() || !(stamp > path_.back().stamp) ||
-      stamp - path_.back().stamp > kMaxBlind) {
+std::optional<PreintegratedMotion> DeadReckoning::StepTo(const CameraImu& imu,
+                                                         double stamp) const {
+  if (!solution_.has_value() || stamp - path_.back().stamp > kMaxBlind) {
     return std::nullopt;
   }
+  return imu.Motion(path_.back().stamp, stamp);
+}
+
+std::optional<DeadReckoning::Velocity> DeadReckoning::VelocityAt(
+    const CameraImu& imu, double stamp, const Vector3d& angular) const {
+  const std::optional<PreintegratedMotion> step = StepTo(imu, stamp);
+  if (!step.has_value()) return std::nullopt;
+  const Matrix3d world_from_last =
+      path_.back().world_from_cam.rotation.toRotationMatrix();
+  const Matrix3d now_from_last =
+      step->start_from_end.conjugate().toRotationMatrix();
+  // The velocity of the sensor in the axes of the last pose, by [v g b].
+  Eigen::Matrix<double, 3, 9> by_x;
+  by_x << world_from_last.transpose(),
+      step->seconds * world_from_last.transpose(),
+      step->by_bias.block<3, 3>(3, 3);
+  const Vector3d sensor = by_x * solution_->x + step->v;
+  const Matrix3d by_gyro = step->by_bias.block<3, 3>(3, 0);
+  const Matrix3d covariance =
+      by_x * solution_->covariance * by_x.transpose() +
+      step->covariance.block<3, 3>(3, 3) +
+      by_gyro * imu.covariance().topLeftCorner<3, 3>() * by_gyro.transpose();
+  return Velocity{now_from_last * sensor - angular.cross(imu.position()),
+                  now_from_last * covariance * now_from_last.transpose()};
+}
+
+std::optional<DeadReckoning::Motion> DeadReckoning::Predict(
+    const CameraImu& imu, double stamp) const {
+  const std::optional<PreintegratedMotion> step = StepTo(imu, stamp);
+  if (!step.has_value()) return std::nullopt;
   const Pose& last = path_.back();
-  const std::optional<PreintegratedMotion> step = imu.Motion(last.stamp, stamp);
   const std::optional<CameraTurn> turn = imu.Turn(last.stamp, stamp);
-  if (!step.has_value() || !turn.has_value()) return std::nullopt;
-  const std::optional<Solution> solution = Solve(imu);
-  if (!solution.has_value()) return std::nullopt;
+  if (!turn.has_value()) return std::nullopt;
   const double t = step->seconds;
   const Matrix3d last_from_world =
       last.world_from_cam.rotation.conjugate().toRotationMatrix();
@@ -166,13 +190,13 @@ std::optional<DeadReckoning::Motion> DeadReckoning::Predict(
       step->by_bias.block<3, 3>(6, 3);
   const Vector3d arm = imu.position();
   const Vector3d center =
-      by_x * solution->x + step->p + arm - step->start_from_end * arm;
+      by_x * solution_->x + step->p + arm - step->start_from_end * arm;
   Motion motion;
   motion.cur_from_last = Rigid3d(step->start_from_end, center).Inverse();
   motion.covariance.topLeftCorner<3, 3>() = turn->covariance;
   const Matrix3d by_gyro = step->by_bias.block<3, 3>(6, 0);
   motion.covariance.bottomRightCorner<3, 3>() =
-      by_x * solution->covariance * by_x.transpose() +
+      by_x * solution_->covariance * by_x.transpose() +
       step->covariance.block<3, 3>(6, 6) +
       by_gyro * imu.covariance().topLeftCorner<3, 3>() * by_gyro.transpose();
   return motion;

@@ -63,7 +63,7 @@ bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
   double z = frame.DepthAt(column, row);
   if (z == 0.0) z = kUsualDepth;
   for (int step = 0; step < kSteps; ++step) {
-    *X = timing.twist.MovedPoint(ray * z, -seconds);
+    *X = timing.twist.MovedBack(ray * z, seconds);
     Eigen::Vector3d measured;
     MoveToRow(camera, lens, timing.depth, timing.twist, X->data(),
               measured.data());
@@ -89,7 +89,7 @@ bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
     if (std::abs(change) < kSmallChange * z) break;
   }
   *depth = z;
-  *X = timing.twist.MovedPoint(ray * z, -seconds);
+  *X = timing.twist.MovedBack(ray * z, seconds);
   return true;
 }
 
@@ -210,10 +210,10 @@ void SmoothPoints(const FrameView& frame, int /*level*/,
       CellSize(static_cast<double>(width) * height, options.max_points);
   points->Clear(7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
   for (int v = kBorder + cell / 2; v < height - kBorder; v += cell) {
+    const double taken_at = timing.depth.RowTime(v, height);
     Rigid3d moved;  // from where the camera was when it measured this row
     if (moves) {
-      moved = frame.reference_from_stamp *
-              timing.twist.MotionDuring(-timing.depth.RowTime(v, height));
+      moved = frame.reference_from_stamp * timing.twist.MotionBack(taken_at);
     }
     for (int u = kBorder + cell / 2; u < width - kBorder; u += cell) {
       InverseDepthPlane fit;
@@ -227,7 +227,7 @@ void SmoothPoints(const FrameView& frame, int /*level*/,
       if (moves) {
         // The next row is measured later, from where the camera is then.
         Eigen::Vector3d velocity;
-        timing.twist.PointVelocity(X.data(), velocity.data());
+        timing.twist.After(taken_at).PointVelocity(X.data(), velocity.data());
         const double shift = per_row * fit.inverse_depth;
         Eigen::Matrix2d rays = pixels.inverse();
         rays.col(1) -=

@@ -26,10 +26,11 @@ Frame FrameRectifier::Rectify(const Frame& frame,
   rectified.depth_delay = 0.0;
   rectified.depth_shutter = Shutter();
   rectified.color_shutter = {0.0, 0.0, frame.color_shutter.is_known};
+  const Twist twist = timing.twist.After(timing.color.offset);
   const auto target_from_measured = [&](double row) {
     const double time =
         timing.depth.RowTime(row, camera_.height) - timing.color.offset;
-    return target_from_middle * timing.twist.MotionDuring(-time);
+    return target_from_middle * twist.MotionBack(time);
   };
   rectified.depth = mover_.Move(frame, target_from_measured).clone();
   MakeFlows(frame, target_from_middle);
@@ -50,13 +51,15 @@ void FrameRectifier::MakeFlows(const Frame& frame,
                                const Rigid3d& target_from_middle) {
   const FrameTiming timing = frame.Timing();
   const Rigid3d middle_from_target = target_from_middle.Inverse();
+  const Twist in_the_middle = timing.twist.After(timing.color.offset);
   const Eigen::Matrix3d turned = middle_from_target.rotation.toRotationMatrix();
   // The image point of a target ray at an inverse depth, seen `seconds` after
   // the exposure of the middle row.
   const auto see = [&](const Eigen::Vector3d& ray, double inverse_depth,
                        double seconds) {
-    const Twist twist = {timing.twist.angular,
-                         inverse_depth * timing.twist.linear};
+    Twist twist = in_the_middle;
+    twist.linear *= inverse_depth;
+    twist.linear_acceleration *= inverse_depth;
     return camera_.Project(twist.MovedPoint(
         turned * ray + inverse_depth * middle_from_target.translation,
         seconds));

@@ -44,7 +44,7 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
   const double seconds = timing.color.RowTime(row, camera.height);
   DepthSample sample;
   Eigen::Vector2d in_depth(0.0, row), in_depth_place;
-  Eigen::Vector3d point = twist.MovedPoint(ray * depth, -seconds);
+  Eigen::Vector3d point = twist.MovedBack(ray * depth, seconds);
   for (int step = 0; step < kDepthSteps; ++step) {
     Eigen::Vector3d measured;
     in_depth =
@@ -54,7 +54,7 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
     if (sample.depth == 0.0) break;
     const double change = sample.depth - measured.z();
     depth += change;
-    point = twist.MovedPoint(ray * depth, -seconds);
+    point = twist.MovedBack(ray * depth, seconds);
     if (std::abs(change) < kSmallChange * depth) break;
   }
   Observation seen;
@@ -68,7 +68,7 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
       LookUpNormal(frame, camera, in_depth.x(), in_depth.y(), in_depth_place);
   if (!seen.normal.isZero(0.0)) {
     const double taken_at = timing.depth.RowTime(in_depth.y(), camera.height);
-    seen.normal += taken_at * twist.angular.cross(seen.normal);
+    seen.normal += taken_at * twist.Mean(taken_at).angular.cross(seen.normal);
     seen.normal.normalize();
   }
   return seen;
@@ -133,7 +133,10 @@ double LargestFlow(const Camera& camera, const FrameTiming& timing,
     return std::abs(shutter.offset) + 0.5 * std::abs(shutter.readout);
   };
   return std::max(longest(timing.color), longest(timing.depth)) * camera.fx *
-         (twist.angular.norm() + twist.linear.norm() / kUsualDepth);
+         (twist.angular.norm() + twist.linear.norm() / kUsualDepth +
+          0.5 * std::max(longest(timing.color), longest(timing.depth)) *
+              (twist.angular_acceleration.norm() +
+               twist.linear_acceleration.norm() / kUsualDepth));
 }
 
 }  // namespace rgbd_pose

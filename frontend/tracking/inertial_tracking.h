@@ -10,12 +10,13 @@
 #include "core/inertial/dead_reckoning.h"
 #include "frontend/frame/frame.h"
 #include "frontend/tracking/tracked_frame.h"
+#include "frontend/tracking/velocity_prior.h"
 
 namespace rgbd_pose {
 
 // What an inertial sensor beside the camera adds to tracking: how the camera
-// has turned since the last frame, how fast it turns while the rows of a frame
-// are exposed, and where it goes while its images show nothing. All of it comes
+// has turned since the last frame, how it moves while the rows of a frame are
+// exposed, and where it goes while its images show nothing. All of it comes
 // with the covariance of what images have taught about the sensor so far, and
 // none of it once they contradict the sensor.
 class InertialTracking {
@@ -29,8 +30,9 @@ class InertialTracking {
   // The turn between two frames; nothing if it is not known.
   std::optional<CameraTurn> Turn(double from, double to) const;
 
-  // The angular velocity while the rows of a frame are exposed, as above.
-  std::optional<CameraRate> RateDuring(const Frame& frame) const;
+  // The velocity at the stamp of a frame, and how it changes while its rows are
+  // exposed, as above. Its linear part needs the path of some frames before.
+  std::optional<MeasuredTwist> TwistDuring(const Frame& frame) const;
 
   // The motion to a time since the last frame that was found so, as above.
   std::optional<DeadReckoning::Motion> Since(double stamp) const;

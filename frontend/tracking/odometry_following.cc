@@ -164,13 +164,13 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
       twist = TwistOf(*state_.aligned, state_.interval);
     }
   }
-  std::optional<CameraRate> rate;
-  if (inertial_.has_value()) rate = inertial_->RateDuring(measured);
+  std::optional<MeasuredTwist> velocity;
+  if (inertial_.has_value()) velocity = inertial_->TwistDuring(measured);
   std::optional<Rigid3d> prev_from_ref;
   if (!state_.is_lost) prev_from_ref = state_.cur_from_ref;
   return state_.shutter_tracking.Follow(
-      measured, state_.interval, prev_from_ref, twist, rate, state_.reference,
-      attempts_.kept(), track, track_again);
+      measured, state_.interval, prev_from_ref, twist, velocity,
+      state_.reference, attempts_.kept(), track, track_again);
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {

@@ -48,7 +48,7 @@ const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,
     const std::optional<Twist>& first_guess,
-    const std::optional<CameraRate>& rate, OdometryKeyframe* reference,
+    const std::optional<MeasuredTwist>& measured, OdometryKeyframe* reference,
     const TrackingResult& tracked, const Track& track,
     const TrackAgain& track_again) {
   found_ = Found();
@@ -67,13 +67,12 @@ const PreparedFrame* ShutterTracking::Follow(
       !early_->velocity.has_value()) {
     MoveReference(*first_guess, MotionMatrix::Zero(), interval, reference);
   }
-  found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
-  if (rate.has_value()) {
-    found_.frame->twist = found_.frame->twist.value_or(Twist());
-    found_.frame->twist->angular = rate->angular;
-  }
   VelocityPrior prior =
-      PriorOf(*reference, prev_from_ref, rate, interval, middle);
+      PriorOf(*reference, prev_from_ref, measured, interval, middle);
+  found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
+  if (measured.has_value()) {
+    found_.frame->twist = prior.Fused(found_.frame->twist.value_or(Twist()));
+  }
   if (!track(*found_.frame, &prior)) return nullptr;
   const auto look = [&] {
     if (tracked.velocity.has_value()) {
@@ -91,7 +90,7 @@ const PreparedFrame* ShutterTracking::Follow(
                        interval, reference)) {
       break;
     }
-    prior = PriorOf(*reference, prev_from_ref, rate, interval, middle);
+    prior = PriorOf(*reference, prev_from_ref, measured, interval, middle);
     const Rigid3d found = tracked.estimate.cur_from_prev;
     if (!track_again(*found_.frame, prior, found)) return nullptr;
     look();
@@ -142,10 +141,10 @@ void ShutterTracking::Restart(const Frame& frame,
 VelocityPrior ShutterTracking::PriorOf(
     const OdometryKeyframe& reference,
     const std::optional<Rigid3d>& prev_from_ref,
-    const std::optional<CameraRate>& rate, double interval,
+    const std::optional<MeasuredTwist>& measured, double interval,
     double middle) const {
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  prior.rate = rate;
+  prior.measured = measured;
   prior.reference_covariance = reference.velocity_covariance;
   const bool is_second = early_.has_value() && !early_->velocity.has_value();
   if (is_second) prior.reference_covariance *= kShareOfFirst;

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "core/geometry/rigid3.h"
-#include "core/inertial/camera_imu.h"
 #include "frontend/frame/frame.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/tracker.h"
@@ -47,14 +46,14 @@ class ShutterTracking {
 
   // Tracks a frame against a reference, `interval` s after the last frame.
   // `prev_from_ref`: motion of the last frame if it was found; `first_guess`:
-  // of the velocity, by default the last one; `rate`: as a gyroscope measured
-  // it, if there is one; `tracked`: what `track` fills.
+  // of the velocity, by default the last one; `measured`: the velocity by an
+  // inertial sensor, if there is one; `tracked`: what `track` fills.
   // Returns the frame with the velocity found, valid until the next call, or
   // null if it is lost.
   const PreparedFrame* Follow(const PreparedFrame& frame, double interval,
                               const std::optional<Rigid3d>& prev_from_ref,
                               const std::optional<Twist>& first_guess,
-                              const std::optional<CameraRate>& rate,
+                              const std::optional<MeasuredTwist>& measured,
                               OdometryKeyframe* reference,
                               const TrackingResult& tracked, const Track& track,
                               const TrackAgain& track_again);
@@ -97,8 +96,8 @@ class ShutterTracking {
 
   VelocityPrior PriorOf(const OdometryKeyframe& reference,
                         const std::optional<Rigid3d>& prev_from_ref,
-                        const std::optional<CameraRate>& rate, double interval,
-                        double middle) const;
+                        const std::optional<MeasuredTwist>& measured,
+                        double interval, double middle) const;
   // Moves the reference according to the mean velocity since then.
   // `covariance`: of the motion since then (see CovarianceInCurrentAxes).
   // Returns false, and moves nothing, if that changes hardly anything.

@@ -27,17 +27,11 @@ double Weight(double square, double sigma) {
 
 TwistEstimate ExpectedTwist(const FrameTiming& timing,
                             const VelocityPrior& prior) {
-  double sigma_angular = prior.SigmaOfRate();
-  // A gyroscope measures the rate while the rows of colour are exposed, and it
-  // changes until those of depth are.
-  if (prior.rate.has_value()) {
-    const double late = timing.depth.offset - timing.color.offset;
-    sigma_angular =
-        std::hypot(sigma_angular, prior.sigma_angular * late / prior.interval);
-  }
-  return {timing.twist, IndependentErrors(sigma_angular, prior.sigma_linear),
+  const double sigma_angular = prior.SigmaAngular();
+  const double sigma_linear = prior.SigmaLinear();
+  return {timing.twist, IndependentErrors(sigma_angular, sigma_linear),
           timing.color.offset * MotionMatrix::Identity(),
-          MotionCovarianceOfTwist(timing, sigma_angular, prior.sigma_linear)};
+          MotionCovarianceOfTwist(timing, sigma_angular, sigma_linear)};
 }
 
 TwistEstimate EstimateTwist(const Correspondences& matches,
@@ -110,7 +104,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   const MotionVector right_by_rows =
       right.tail<6>() - follows.transpose() * right.head<6>();
   const MotionVector prior_information =
-      IndependentErrors(1.0 / prior.SigmaOfRate(), 1.0 / prior.sigma_linear)
+      IndependentErrors(1.0 / prior.SigmaAngular(), 1.0 / prior.SigmaLinear())
           .diagonal();
   const Twist off = prior_mean - timing.twist;
   MotionVector prior_change;

@@ -27,8 +27,29 @@ constexpr double kSigmaOfChange = 0.5;
 // hand has 1.3 (angular) and 1.9 (linear).
 constexpr double kChangeOfAcceleration = 1.7;  // 1/s
 
+// The share of an acceleration that remains where it was measured: noise, and
+// its change within a frame.
+constexpr double kRemainingShare = 0.3;
+
 // Weight of a new value in the mean squares, which span about ten frames.
 constexpr double kShareOfNew = 0.1;
+
+// The weight of a value in the mean with one that was measured.
+double ShareOfExpected(double sigma, double measured_sigma) {
+  if (std::isinf(measured_sigma)) return 1.0;
+  return 1.0 / (1.0 + std::pow(sigma / measured_sigma, 2));
+}
+
+double FusedSigma(double sigma, double measured_sigma) {
+  return sigma * std::sqrt(ShareOfExpected(sigma, measured_sigma));
+}
+
+// By how much errors due to an acceleration shrink if the velocity and its
+// change were measured.
+double RemainingShare(double sigma, double measured_sigma) {
+  return kRemainingShare +
+         (1.0 - kRemainingShare) * ShareOfExpected(sigma, measured_sigma);
+}
 
 }  // namespace
 
@@ -48,9 +69,25 @@ std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
   return TwistOf(cur_from_prev, interval);
 }
 
-double VelocityPrior::SigmaOfRate() const {
-  if (!rate.has_value()) return sigma_angular;
-  return std::min(sigma_angular, std::sqrt(rate->covariance.trace() / 3.0));
+double VelocityPrior::SigmaAngular() const {
+  if (!measured.has_value()) return sigma_angular;
+  return FusedSigma(sigma_angular, measured->sigma_angular);
+}
+
+double VelocityPrior::SigmaLinear() const {
+  if (!measured.has_value()) return sigma_linear;
+  return FusedSigma(sigma_linear, measured->sigma_linear);
+}
+
+Twist VelocityPrior::Fused(const Twist& expected) const {
+  if (!measured.has_value()) return expected;
+  const Twist& seen = measured->twist;
+  Twist fused = seen;
+  fused.angular += ShareOfExpected(sigma_angular, measured->sigma_angular) *
+                   (expected.angular - seen.angular);
+  fused.linear += ShareOfExpected(sigma_linear, measured->sigma_linear) *
+                  (expected.linear - seen.linear);
+  return fused;
 }
 
 // The estimated velocity feeds back into its own prior. With an extrapolation
@@ -63,8 +100,7 @@ Twist VelocityPrior::Mean(const Rigid3d& cur_from_ref,
   if (between.has_value() && prev_twist.has_value()) {
     mean = kShareOfBetween * *between + (1.0 - kShareOfBetween) * *prev_twist;
   }
-  if (rate.has_value()) mean.angular = rate->angular;
-  return mean;
+  return Fused(mean);
 }
 
 MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
@@ -91,10 +127,15 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
   const double per_second = 1.0 / (kSigmaOfChange * prior.interval);
   const double scale = half_square * per_second;
   double turn = scale * prior.sigma_angular;
-  if (prior.rate.has_value()) {
-    turn = std::max(turn, half_square * prior.rate->acceleration);
+  double shift = scale * prior.sigma_linear;
+  if (prior.measured.has_value()) {
+    const MeasuredTwist& measured = *prior.measured;
+    turn = std::max(turn,
+                    half_square * measured.twist.angular_acceleration.norm());
+    turn *= RemainingShare(prior.sigma_angular, measured.sigma_angular);
+    shift *= RemainingShare(prior.sigma_linear, measured.sigma_linear);
   }
-  return IndependentErrors(turn, scale * prior.sigma_linear);
+  return IndependentErrors(turn, shift);
 }
 
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
@@ -135,7 +176,8 @@ void VelocityModel::Add(const Twist& twist, double timestamp, double middle) {
     linear_square_ += kShareOfNew * (acceleration.linear.squaredNorm() / 3.0 -
                                      linear_square_);
   }
-  last_ = twist;
+  // An acceleration that was measured is that of its frame alone.
+  last_ = Twist{twist.angular, twist.linear};
   timestamp_ = timestamp;
   middle_from_last_ = twist.MotionDuring(middle);
 }

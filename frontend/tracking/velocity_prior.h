@@ -1,13 +1,22 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"
-#include "core/inertial/camera_imu.h"
 
 namespace rgbd_pose {
+
+// The velocity at a frame as an inertial sensor has measured it, with the
+// standard deviations of its parts. Accelerations are 0 where the velocity is
+// not known.
+struct MeasuredTwist {
+  Twist twist;
+  double sigma_angular = std::numeric_limits<double>::infinity();  // rad/s
+  double sigma_linear = std::numeric_limits<double>::infinity();   // m/s
+};
 
 // What is known about the camera's velocity at a frame before its rows are
 // used, as a function of the motion to this frame.
@@ -27,13 +36,17 @@ struct VelocityPrior {
   double sigma_angular = 0.0;  // rad/s
   double sigma_linear = 0.0;   // m/s
 
-  // The angular velocity while the rows are exposed as a gyroscope has measured
-  // it; nothing: unknown.
-  std::optional<CameraRate> rate = std::nullopt;
+  // Nothing: there is no inertial sensor.
+  std::optional<MeasuredTwist> measured = std::nullopt;
 
-  // The standard deviation of the angular velocity once the motion is known,
-  // rad/s.
-  double SigmaOfRate() const;
+  // Standard deviations of the velocity once the motion is known and the sensor
+  // is asked, rad/s and m/s.
+  double SigmaAngular() const;
+  double SigmaLinear() const;
+
+  // The weighted mean of a velocity with the above standard deviations and of
+  // the one that was measured, with the accelerations that were measured.
+  Twist Fused(const Twist& expected) const;
 
   // Covariance of the velocity (angular, then linear) according to which the
   // points of the reference have been moved.
@@ -59,7 +72,7 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
 
 // Returns the covariance that accelerations within a frame add to the motion.
 // Their size follows from the prior's change of velocity between frames, and
-// from what a gyroscope says of this one.
+// from how much of them was measured.
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                             const VelocityPrior& prior);
 
@@ -97,7 +110,7 @@ class VelocityModel {
 
   // Sets the velocity of the last frame, which is better known now.
   void Correct(const Twist& twist, double timestamp) {
-    last_ = twist;
+    last_ = Twist{twist.angular, twist.linear};
     timestamp_ = timestamp;
   }
   // Call this if the last frame was corrected with another velocity.
