@@ -133,18 +133,11 @@ std::optional<CameraTurn> CameraImu::Turn(double from, double to) const {
 }
 
 std::optional<CameraRate> CameraImu::Rate(double from, double to) const {
-  const double middle = 0.5 * (from + to);
   const std::optional<CameraTurn> turn = Turn(from, to);
-  const std::optional<CameraTurn> first = Turn(from, middle);
-  const std::optional<CameraTurn> second = Turn(middle, to);
-  if (!turn || !first || !second) return std::nullopt;
+  if (!turn.has_value()) return std::nullopt;
   const double per_second = 1.0 / (to - from);
-  const Eigen::Vector3d change = RotationVector(second->cur_from_prev) -
-                                 RotationVector(first->cur_from_prev);
-  // The halves have twice the rate per turn, and are half an interval apart.
   return CameraRate{-per_second * RotationVector(turn->cur_from_prev),
-                    per_second * per_second * turn->covariance,
-                    -4.0 * per_second * per_second * change};
+                    per_second * per_second * turn->covariance};
 }
 
 void CameraImu::Learn(double from, double to, const CameraTurn& seen) {

@@ -23,12 +23,10 @@ struct CameraTurn {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-// How fast the camera turns in an interval, in its own axes.
+// How fast the camera turns in an interval, in its own axes halfway.
 struct CameraRate {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();     // on average, rad/s
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // of `angular`
-  // By how much the rate changes, rad/s^2.
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
 };
 
 // A gyroscope, with an accelerometer, beside a camera. While the camera is
@@ -69,8 +67,7 @@ class CameraImu {
   // the gyroscope turned faster than it can measure.
   std::optional<PreintegratedMotion> Motion(double from, double to) const;
 
-  // The turn between two times, and the rate, in the axes halfway. Nothing
-  // where Motion has nothing.
+  // The turn between two times, and the rate. Nothing where Motion has nothing.
   std::optional<CameraTurn> Turn(double from, double to) const;
   std::optional<CameraRate> Rate(double from, double to) const;
 

@@ -1,6 +1,7 @@
 #include "frontend/tracking/inertial_tracking.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rgbd_pose {
@@ -33,6 +34,45 @@ Exposure ExposureOf(const Shutter& shutter) {
   return {shutter.offset - half, shutter.offset + half};
 }
 
+// Exposures are divided into so many parts, to find how velocities change.
+constexpr int kParts = 4;
+
+// A velocity that changes at a constant rate.
+struct Line {
+  Eigen::Vector3d value;  // at the stamp
+  Eigen::Vector3d slope;
+  double rest = 0.0;  // what it lacks, summed up over time; root of the mean
+                      // square
+};
+
+// `values`: in the middle of parts that last `part` seconds, the first of which
+// begins `from` seconds after the stamp.
+Line FitLine(const std::array<Eigen::Vector3d, kParts>& values, double from,
+             double part) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  const auto after_middle = [&](int i) {
+    return part * (i + 0.5 - 0.5 * kParts);
+  };
+  for (int i = 0; i < kParts; ++i) {
+    mean += values[i] / kParts;
+    moment += after_middle(i) * values[i];
+    squares += after_middle(i) * after_middle(i);
+  }
+  Line line;
+  line.slope = moment / squares;
+  const double middle = from + 0.5 * kParts * part;
+  line.value = mean - middle * line.slope;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < kParts; ++i) {
+    sum += part * (values[i] - mean - after_middle(i) * line.slope);
+    line.rest += sum.squaredNorm() / kParts;
+  }
+  line.rest = std::sqrt(line.rest);
+  return line;
+}
+
 }  // namespace
 
 std::optional<CameraTurn> InertialTracking::Turn(double from, double to) const {
@@ -44,29 +84,38 @@ std::optional<MeasuredTwist> InertialTracking::TwistDuring(
     const Frame& frame) const {
   if (!imu_.is_trusted()) return std::nullopt;
   const Exposure color = ExposureOf(frame.color_shutter);
-  const std::optional<CameraRate> rate =
-      imu_.Rate(frame.timestamp + color.from, frame.timestamp + color.to);
-  if (!rate.has_value()) return std::nullopt;
-  MeasuredTwist measured;
-  Twist& twist = measured.twist;
-  twist.angular_acceleration = rate->acceleration;
-  twist.angular =
-      rate->angular - frame.color_shutter.offset * twist.angular_acceleration;
-  measured.sigma_angular = std::sqrt(rate->covariance.trace() / 3.0);
-  // Surfaces move along their viewing rays until depth is exposed.
   const Exposure depth = ExposureOf(frame.DepthShutter());
   const double from = std::min(color.from, depth.from);
-  const double to = std::max(color.to, depth.to);
-  const auto velocity_at = [&](double after) {
-    return path_.VelocityAt(imu_, frame.timestamp + after,
-                            twist.After(after).angular);
-  };
-  const std::optional<DeadReckoning::Velocity> first = velocity_at(from);
-  const std::optional<DeadReckoning::Velocity> last = velocity_at(to);
-  if (!first.has_value() || !last.has_value()) return measured;
-  twist.linear_acceleration = (last->linear - first->linear) / (to - from);
-  twist.linear = first->linear - from * twist.linear_acceleration;
-  measured.sigma_linear = std::sqrt(last->covariance.trace() / 3.0);
+  const double part = (std::max(color.to, depth.to) - from) / kParts;
+  std::array<Eigen::Vector3d, kParts> rates;
+  MeasuredTwist measured;
+  double variance = 0.0;
+  for (int i = 0; i < kParts; ++i) {
+    const double start = frame.timestamp + from + i * part;
+    const std::optional<CameraRate> rate = imu_.Rate(start, start + part);
+    if (!rate.has_value()) return std::nullopt;
+    rates[i] = rate->angular;
+    variance += rate->covariance.trace() / (3.0 * kParts);
+  }
+  measured.sigma_angular = std::sqrt(variance);
+  const Line rate = FitLine(rates, from, part);
+  measured.twist.angular = rate.value;
+  measured.twist.angular_acceleration = rate.slope;
+  measured.rest_turn = rate.rest;
+  std::array<Eigen::Vector3d, kParts> velocities;
+  for (int i = 0; i < kParts; ++i) {
+    const double middle = from + (i + 0.5) * part;
+    const std::optional<DeadReckoning::Velocity> velocity = path_.VelocityAt(
+        imu_, frame.timestamp + middle, measured.twist.After(middle).angular);
+    if (!velocity.has_value()) return measured;
+    velocities[i] = velocity->linear;
+    variance = velocity->covariance.trace() / 3.0;
+  }
+  measured.sigma_linear = std::sqrt(variance);  // largest at the end
+  const Line velocity = FitLine(velocities, from, part);
+  measured.twist.linear = velocity.value;
+  measured.twist.linear_acceleration = velocity.slope;
+  measured.rest_shift = velocity.rest;
   return measured;
 }
 

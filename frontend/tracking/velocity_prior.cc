@@ -27,10 +27,6 @@ constexpr double kSigmaOfChange = 0.5;
 // hand has 1.3 (angular) and 1.9 (linear).
 constexpr double kChangeOfAcceleration = 1.7;  // 1/s
 
-// The share of an acceleration that remains where it was measured: noise, and
-// its change within a frame.
-constexpr double kRemainingShare = 0.3;
-
 // Weight of a new value in the mean squares, which span about ten frames.
 constexpr double kShareOfNew = 0.1;
 
@@ -38,17 +34,6 @@ constexpr double kShareOfNew = 0.1;
 double ShareOfExpected(double sigma, double measured_sigma) {
   if (std::isinf(measured_sigma)) return 1.0;
   return 1.0 / (1.0 + std::pow(sigma / measured_sigma, 2));
-}
-
-double FusedSigma(double sigma, double measured_sigma) {
-  return sigma * std::sqrt(ShareOfExpected(sigma, measured_sigma));
-}
-
-// By how much errors due to an acceleration shrink if the velocity and its
-// change were measured.
-double RemainingShare(double sigma, double measured_sigma) {
-  return kRemainingShare +
-         (1.0 - kRemainingShare) * ShareOfExpected(sigma, measured_sigma);
 }
 
 }  // namespace
@@ -71,20 +56,19 @@ std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
 
 double VelocityPrior::SigmaAngular() const {
   if (!measured.has_value()) return sigma_angular;
-  return FusedSigma(sigma_angular, measured->sigma_angular);
+  return std::min(sigma_angular, measured->sigma_angular);
 }
 
 double VelocityPrior::SigmaLinear() const {
   if (!measured.has_value()) return sigma_linear;
-  return FusedSigma(sigma_linear, measured->sigma_linear);
+  return sigma_linear *
+         std::sqrt(ShareOfExpected(sigma_linear, measured->sigma_linear));
 }
 
 Twist VelocityPrior::Fused(const Twist& expected) const {
   if (!measured.has_value()) return expected;
   const Twist& seen = measured->twist;
   Twist fused = seen;
-  fused.angular += ShareOfExpected(sigma_angular, measured->sigma_angular) *
-                   (expected.angular - seen.angular);
   fused.linear += ShareOfExpected(sigma_linear, measured->sigma_linear) *
                   (expected.linear - seen.linear);
   return fused;
@@ -129,11 +113,10 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
   double turn = scale * prior.sigma_angular;
   double shift = scale * prior.sigma_linear;
   if (prior.measured.has_value()) {
-    const MeasuredTwist& measured = *prior.measured;
-    turn = std::max(turn,
-                    half_square * measured.twist.angular_acceleration.norm());
-    turn *= RemainingShare(prior.sigma_angular, measured.sigma_angular);
-    shift *= RemainingShare(prior.sigma_linear, measured.sigma_linear);
+    const MeasuredTwist& seen = *prior.measured;
+    turn = std::max(turn, half_square * seen.twist.angular_acceleration.norm());
+    turn += seen.rest_turn;
+    shift += seen.rest_shift;
   }
   return IndependentErrors(turn, shift);
 }

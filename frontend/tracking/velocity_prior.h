@@ -16,6 +16,11 @@ struct MeasuredTwist {
   Twist twist;
   double sigma_angular = std::numeric_limits<double>::infinity();  // rad/s
   double sigma_linear = std::numeric_limits<double>::infinity();   // m/s
+
+  // How far the camera is from where constant accelerations take it while rows
+  // are exposed, rad and m.
+  double rest_turn = 0.0;
+  double rest_shift = 0.0;
 };
 
 // What is known about the camera's velocity at a frame before its rows are
@@ -44,8 +49,9 @@ struct VelocityPrior {
   double SigmaAngular() const;
   double SigmaLinear() const;
 
-  // The weighted mean of a velocity with the above standard deviations and of
-  // the one that was measured, with the accelerations that were measured.
+  // What an expected velocity becomes by what was measured: its angular part,
+  // as no history foresees a sudden turn, the mean of both linear parts,
+  // weighted with their standard deviations, and the accelerations.
   Twist Fused(const Twist& expected) const;
 
   // Covariance of the velocity (angular, then linear) according to which the
@@ -72,7 +78,9 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
 
 // Returns the covariance that accelerations within a frame add to the motion.
 // Their size follows from the prior's change of velocity between frames, and
-// from how much of them was measured.
+// from what was measured of this one. A frame that is corrected with measured
+// accelerations errs less than that, but not where the hand is so fast that
+// images are blurred, and there the covariance has to hold.
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                             const VelocityPrior& prior);
 

@@ -6,18 +6,20 @@
 
 namespace rgbd_pose {
 
-// later_from_earlier of a camera at constant velocity, in steps small enough to
-// be accurate to about 1e-6 m in a readout.
+// later_from_earlier of a camera at constant accelerations, in steps small
+// enough to be accurate to about 1e-6 m in a readout.
 inline Rigid3d ExactMotion(const Twist& twist, double seconds) {
   constexpr int kSteps = 200;
-  const Rigid3d step = twist.MotionDuring(seconds / kSteps);
+  const double step = seconds / kSteps;
   Rigid3d motion;
-  for (int i = 0; i < kSteps; ++i) motion = step * motion;
+  for (int i = 0; i < kSteps; ++i) {
+    motion = twist.After(i * step).MotionDuring(step) * motion;
+  }
   return motion;
 }
 
 // The pixel at which a rolling shutter sees a point (camera axes at the stamp,
-// m), by bisection of the row. The camera's velocity is constant.
+// m), by bisection of the row.
 inline Eigen::Vector2d ExactlySeen(const Camera& camera, const Shutter& shutter,
                                    const Twist& twist,
                                    const Eigen::Vector3d& point) {

@@ -18,16 +18,22 @@ inline SyntheticOptions HandheldOptions() {
   return options;
 }
 
-// The path's velocity at the time stamp of a frame.
+// The path's velocity at the time stamp of a frame, and how it changes.
 inline Twist TwistOfPath(int index) {
   constexpr double kStep = 1e-3;  // s
   const SyntheticOptions options = HandheldOptions();
   const SyntheticPath path = FindSyntheticPath(options.path);
   const double t = index / options.rate_hz;
   const double duration = (options.frames - 1) / options.rate_hz;
-  return TwistOf(
-      path(t + kStep, duration).Inverse() * path(t - kStep, duration),
-      2.0 * kStep);
+  const auto between = [&](double from, double to) {
+    return TwistOf(path(to, duration).Inverse() * path(from, duration),
+                   to - from);
+  };
+  Twist twist = between(t - kStep, t + kStep);
+  const Twist change = between(t, t + kStep) - between(t - kStep, t);
+  twist.angular_acceleration = change.angular / kStep;
+  twist.linear_acceleration = change.linear / kStep;
+  return twist;
 }
 
 // A frame with its velocity.

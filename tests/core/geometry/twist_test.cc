@@ -20,13 +20,14 @@ Twist RandomTwist(RandomWorld* world) {
   return {angular, world->Vector(1.0)};
 }
 
-// The motion at a constant twist, composed of many short motions, whose
-// translations lack second-order terms.
-Rigid3d ConstantTwist(const Twist& twist, double seconds) {
+// The motion composed of many short motions, whose translations lack
+// second-order terms.
+Rigid3d ManyMotions(const Twist& twist, double seconds) {
   constexpr int kSteps = 2000;
+  const double step = seconds / kSteps;
   Rigid3d motion;
   for (int i = 0; i < kSteps; ++i) {
-    motion = twist.MotionDuring(seconds / kSteps) * motion;
+    motion = twist.After(i * step).MotionDuring(step) * motion;
   }
   return motion;
 }
@@ -74,11 +75,45 @@ TEST(TwistTest, TheShorterWayRound) {
 }
 
 TEST(TwistTest, WeightedSums) {
-  const Twist a = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
-  const Twist b = {{0.5, 0.0, -1.0}, {2.0, 1.0, 0.0}};
+  const Twist a = {
+      {1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}, {1.0, 3.0, 5.0}};
+  const Twist b = {
+      {0.5, 0.0, -1.0}, {2.0, 1.0, 0.0}, {3.0, 2.0, 1.0}, {0.0, -1.0, 1.0}};
   const Twist sum = 2.0 * a + b - a;
   EXPECT_EQ(sum.angular, Vector3d(1.5, 2.0, 2.0));
   EXPECT_EQ(sum.linear, Vector3d(6.0, 6.0, 6.0));
+  EXPECT_EQ(sum.angular_acceleration, Vector3d(10.0, 10.0, 10.0));
+  EXPECT_EQ(sum.linear_acceleration, Vector3d(1.0, 2.0, 6.0));
+}
+
+// As far as a hand accelerates, in the time in which rows are exposed.
+TEST(TwistTest, PointsMoveWithAccelerations) {
+  RandomWorld world(4);
+  for (int i = 0; i < 20; ++i) {
+    Twist twist = RandomTwist(&world);
+    twist.angular_acceleration = world.Vector(20.0);
+    twist.linear_acceleration = world.Vector(8.0);
+    Twist constant = twist;
+    constant.angular_acceleration.setZero();
+    constant.linear_acceleration.setZero();
+    const Vector3d point = world.Vector(1.0) + Vector3d(0.0, 0.0, 2.0);
+    for (const double seconds : {0.03, -0.03}) {
+      const Rigid3d motion = ManyMotions(twist, seconds);
+      const double error =
+          (twist.MovedPoint(point, seconds) - motion * point).norm();
+      EXPECT_LT(error, 1.5e-3) << i;
+      EXPECT_LT(
+          error,
+          0.2 * (constant.MovedPoint(point, seconds) - motion * point).norm())
+          << i;
+      EXPECT_LT((twist.MovedBack(motion * point, seconds) - point).norm(),
+                1.5e-3)
+          << i;
+      EXPECT_LT((twist.MotionBack(seconds) * (motion * point) - point).norm(),
+                3e-3)
+          << i;
+    }
+  }
 }
 
 TEST(TwistTest, PointsMoveToSecondOrder) {
@@ -88,7 +123,7 @@ TEST(TwistTest, PointsMoveToSecondOrder) {
     const Vector3d point = world.Vector(1.0) + Vector3d(0.0, 0.0, 2.0);
     const auto error = [&](double seconds) {
       return (twist.MovedPoint(point, seconds) -
-              ConstantTwist(twist, seconds) * point)
+              ManyMotions(twist, seconds) * point)
           .norm();
     };
     for (const double seconds : {0.04, -0.04}) {

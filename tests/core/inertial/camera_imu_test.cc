@@ -44,22 +44,6 @@ TEST(CameraImuTest, TellsTheTurnsOfTheCamera) {
   }
 }
 
-// By how much the rate changes from one half to the other is what the path has.
-TEST(CameraImuTest, TellsHowTheRateChanges) {
-  CameraWithImu world;
-  world.bias.setZero();
-  CameraImu imu({world.truth, true});
-  imu.Add(world.Samples(-0.2, 3.0));
-  constexpr double kHalf = 0.02;
-  for (double t = 0.1; t < 2.0; t += 0.1) {
-    const std::optional<CameraRate> rate = imu.Rate(t - kHalf, t + kHalf);
-    ASSERT_TRUE(rate.has_value());
-    const Eigen::Vector3d change = world.hand.Sample(t + kHalf / 2.0).gyro -
-                                   world.hand.Sample(t - kHalf / 2.0).gyro;
-    EXPECT_NEAR(rate->acceleration, change.norm() / kHalf, 0.6) << t;
-  }
-}
-
 // The bias of its gyroscope, a delay of 12 ms and 3 degrees of its mounting are
 // found, with no larger errors than the covariance tells.
 TEST(CameraImuTest, LearnsBiasDelayAndMounting) {

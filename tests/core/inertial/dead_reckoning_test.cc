@@ -19,7 +19,7 @@ struct Blind {
     world.Teach(0.0, 10.0, kTurnSigma, &imu);
     for (int frame = 0; frame <= 300; ++frame) {
       last = world.Seen(frame / 30.0, kTurnSigma, kShiftSigma);
-      path.Add(frame / 30.0, last);
+      path.Add(imu, frame / 30.0, last);
     }
   }
 
@@ -67,6 +67,33 @@ TEST(DeadReckoningTest, GoesOnForTwoSeconds) {
   }
 }
 
+// While images show the way: a velocity between two frames.
+TEST(DeadReckoningTest, KnowsTheVelocityOfTheCamera) {
+  constexpr double kAfter = 0.03;  // s
+  double sum = 0.0, chi2 = 0.0;
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const Blind blind(seed);
+    constexpr double kStep = 1e-3;
+    const double now = 10.0 + kAfter;
+    const Twist truth =
+        TwistOf(blind.world.WorldFromCam(now + kStep).Inverse() *
+                    blind.world.WorldFromCam(now - kStep),
+                2.0 * kStep);
+    const auto velocity = blind.path.VelocityAt(blind.imu, now, truth.angular);
+    ASSERT_TRUE(velocity.has_value());
+    const Eigen::Vector3d error = velocity->linear - truth.linear;
+    sum += error.squaredNorm();
+    chi2 += error.dot(velocity->covariance.inverse() * error) / 3.0;
+  }
+  EXPECT_LT(std::sqrt(sum / kSeeds), 0.01);
+  EXPECT_GT(chi2 / kSeeds, 0.05);
+  EXPECT_LT(chi2 / kSeeds, 1.5);
+  const Blind blind(1);
+  EXPECT_FALSE(blind.path.VelocityAt(blind.imu, 9.9, Eigen::Vector3d::Zero())
+                   .has_value());
+}
+
 TEST(DeadReckoningTest, EndsAfterTwoSeconds) {
   const Blind blind(1);
   EXPECT_TRUE(blind.After(DeadReckoning::kMaxBlind).has_value());
@@ -80,12 +107,12 @@ TEST(DeadReckoningTest, NeedsAPathWithSamples) {
   EXPECT_FALSE(path.needed_from().has_value());
   EXPECT_FALSE(path.Predict(blind.imu, 0.5).has_value());
   for (int frame = 0; frame < 5; ++frame) {
-    path.Add(frame / 30.0, blind.world.WorldFromCam(frame / 30.0));
+    path.Add(blind.imu, frame / 30.0, blind.world.WorldFromCam(frame / 30.0));
   }
   EXPECT_FALSE(path.Predict(blind.imu, 0.3).has_value());  // too short
   EXPECT_EQ(path.needed_from(), 0.0);
   for (int frame = 5; frame < 40; ++frame) {
-    path.Add(frame / 30.0, blind.world.WorldFromCam(frame / 30.0));
+    path.Add(blind.imu, frame / 30.0, blind.world.WorldFromCam(frame / 30.0));
   }
   EXPECT_TRUE(path.Predict(blind.imu, 1.5).has_value());
   EXPECT_FALSE(path.Predict(CameraImu({blind.world.truth, true}), 1.5)

@@ -62,11 +62,13 @@ Frame FrameOfWall(const Camera& camera, const FrameTiming& timing) {
 const Twist kTurning = {{0.7, -0.6, 0.5}, {0.0, 0.0, 0.0}};
 const Twist kSliding = {{0.0, 0.0, 0.0}, {0.4, -0.5, 0.6}};
 const Twist kMoving = kTurning + kSliding;
+const Twist kShaking = {
+    {0.7, -0.6, 0.5}, {0.4, -0.5, 0.6}, {12.0, 15.0, -10.0}, {-5.0, 6.0, 4.0}};
 
 // Colour shutter only, depth shutter only, both, and last row first.
 std::vector<FrameTiming> Timings() {
   std::vector<FrameTiming> timings;
-  for (const Twist& twist : {kTurning, kSliding, kMoving}) {
+  for (const Twist& twist : {kTurning, kSliding, kMoving, kShaking}) {
     for (const auto& [color, depth] : std::vector<std::pair<Shutter, Shutter>>{
              {{-0.0075, 0.028}, {-0.018, 0.028}},
              {{0.006, -0.02}, {0.015, -0.03}},

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/util/quantile.h"
 #include "tests/support/shutter_sequence.h"
 
 namespace rgbd_pose {
@@ -113,22 +114,46 @@ TEST(InertialTrackingTest, WithoutASensorTheCameraIsLostThere) {
   EXPECT_EQ(run.frames[kBlindFrom + 1].status, TrackingStatus::kLost);
 }
 
-TEST(InertialTrackingTest, KnowsTheAngularVelocityOfEachFrame) {
+// After a second, in which the sensor is tested.
+constexpr int kFirst = 30;
+
+TEST(InertialTrackingTest, KnowsTheVelocityOfEachFrame) {
   const HandWithImu& hand = HandWithImu::Get();
+  struct MeanError {
+    double angular = 0.0, linear = 0.0;
+  };
   const auto mean_error = [&](const TrackedHand& run) {
-    double sum = 0.0;
-    constexpr int kFirst = 30;
+    MeanError mean;
     for (int i = kFirst; i + 1 < kFrames; ++i) {
       // The rate of the path over the two intervals around the frame.
       const Twist truth = TwistOf(hand.sequence.Motion(i - 1, i + 1),
                                   hand.sequence.frames[i + 1].timestamp -
                                       hand.sequence.frames[i - 1].timestamp);
-      sum += (run.twists[i].value().angular - truth.angular).norm();
+      const Twist error = run.twists[i].value() - truth;
+      mean.angular += error.angular.norm() / (kFrames - 1 - kFirst);
+      mean.linear += error.linear.norm() / (kFrames - 1 - kFirst);
     }
-    return sum / (kFrames - 1 - kFirst);
+    return mean;
   };
-  const double without = mean_error(TrackHand(Sensor::kNone, false));
-  EXPECT_LT(mean_error(TrackHand(Sensor::kGood, false)), 0.7 * without);
+  const MeanError without = mean_error(TrackHand(Sensor::kNone, false));
+  const MeanError with = mean_error(TrackHand(Sensor::kGood, false));
+  EXPECT_LT(with.angular, 0.4 * without.angular);
+  EXPECT_LT(with.linear, 0.4 * without.linear);
+}
+
+// How the camera accelerates while its rows are exposed is most of what a
+// rolling shutter leaves of the errors of motions.
+TEST(InertialTrackingTest, MovesRowsByAccelerations) {
+  const auto median_error = [&](Sensor sensor) {
+    const TrackedHand run = TrackHand(sensor, false);
+    constexpr int kApart = 6;
+    std::vector<double> errors;
+    for (int i = kFirst; i + kApart < kFrames; ++i) {
+      errors.push_back(ShiftError(run, i, i + kApart));
+    }
+    return Median(errors);
+  };
+  EXPECT_LT(median_error(Sensor::kGood), 0.6 * median_error(Sensor::kNone));
 }
 
 // The delay of the sensor that is found if colour is exposed so much later (s)

@@ -45,6 +45,28 @@ TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
   ExpectNear(*prior.Between(cur_from_ref, wrong), kPriorTwist);
 }
 
+// A sudden turn is not in the history, but a gyroscope shows it.
+TEST(VelocityPriorTest, AMeasuredTurnIsBelieved) {
+  VelocityPrior prior = VelocityModel().Prior(kPrevFromRef, kInterval, 0.0);
+  prior.sigma_angular = prior.sigma_linear = 0.02;
+  const Twist expected;
+  ExpectNear(prior.Fused(expected), expected);
+  EXPECT_EQ(prior.SigmaLinear(), 0.02);
+  const Twist seen = {
+      {0.0, 5.0, 0.0}, {0.3, 0.0, 0.0}, {0.0, 50.0, 0.0}, {1.0, 0.0, 0.0}};
+  prior.measured = MeasuredTwist{seen, 0.5};
+  EXPECT_EQ(prior.Fused(expected).angular, seen.angular);
+  EXPECT_EQ(prior.Fused(expected).angular_acceleration,
+            seen.angular_acceleration);
+  EXPECT_EQ(prior.Fused(expected).linear, expected.linear);
+  EXPECT_EQ(prior.SigmaLinear(), 0.02);
+  prior.measured->sigma_linear = 0.01;
+  ExpectNear(prior.Fused(expected), {seen.angular, {0.8 * 0.3, 0.0, 0.0}});
+  EXPECT_EQ(prior.Fused(expected).linear_acceleration,
+            seen.linear_acceleration);
+  EXPECT_NEAR(prior.SigmaLinear(), 0.02 * std::sqrt(0.2), kTwistRounding);
+}
+
 TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
   const Rigid3d motion = kPriorTwist.MotionDuring(kInterval) * kPrevFromRef;
   VelocityModel model;
