@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -98,6 +99,9 @@ class CameraImu {
   using StateMatrix = Eigen::Matrix<double, 7, 7>;
   const State& state() const { return state_; }
   const StateMatrix& covariance() const { return covariance_; }
+
+  // Standard deviation of the delay, s.
+  double delay_sigma() const { return std::sqrt(covariance_(3, 3)); }
 
  private:
   static constexpr int kMinLearnt = 3;

@@ -34,6 +34,14 @@ Exposure ExposureOf(const Shutter& shutter) {
   return {shutter.offset - half, shutter.offset + half};
 }
 
+// Accelerations are not used before the delay of the sensor is known to this,
+// s: a pan begins within a tenth of a second.
+constexpr double kMaxDelaySigma = 0.005;
+
+// Where a camera is turned fast, the errors of its last poses are more alike
+// than the covariance of the velocity allows for: sigma is so much larger.
+constexpr double kPathErrsAlike = 3.0;
+
 // Exposures are divided into so many parts, to find how velocities change.
 constexpr int kParts = 4;
 
@@ -84,37 +92,40 @@ std::optional<MeasuredTwist> InertialTracking::TwistDuring(
     const Frame& frame) const {
   if (!imu_.is_trusted()) return std::nullopt;
   const Exposure color = ExposureOf(frame.color_shutter);
+  const std::optional<CameraRate> mean =
+      imu_.Rate(frame.timestamp + color.from, frame.timestamp + color.to);
+  if (!mean.has_value()) return std::nullopt;
+  MeasuredTwist measured;
+  measured.twist.angular = mean->angular;
+  measured.sigma_angular = std::sqrt(mean->covariance.trace() / 3.0);
+  if (imu_.delay_sigma() > kMaxDelaySigma) return measured;
   const Exposure depth = ExposureOf(frame.DepthShutter());
   const double from = std::min(color.from, depth.from);
   const double part = (std::max(color.to, depth.to) - from) / kParts;
-  std::array<Eigen::Vector3d, kParts> rates;
-  MeasuredTwist measured;
-  double variance = 0.0;
+  std::array<Eigen::Vector3d, kParts> rates, velocities;
   for (int i = 0; i < kParts; ++i) {
     const double start = frame.timestamp + from + i * part;
     const std::optional<CameraRate> rate = imu_.Rate(start, start + part);
-    if (!rate.has_value()) return std::nullopt;
+    if (!rate.has_value()) return measured;
     rates[i] = rate->angular;
-    variance += rate->covariance.trace() / (3.0 * kParts);
   }
-  measured.sigma_angular = std::sqrt(variance);
   const Line rate = FitLine(rates, from, part);
   measured.twist.angular = rate.value;
   measured.twist.angular_acceleration = rate.slope;
   measured.rest_turn = rate.rest;
-  std::array<Eigen::Vector3d, kParts> velocities;
+  double variance = 0.0;
   for (int i = 0; i < kParts; ++i) {
-    const double middle = from + (i + 0.5) * part;
-    const std::optional<DeadReckoning::Velocity> velocity = path_.VelocityAt(
-        imu_, frame.timestamp + middle, measured.twist.After(middle).angular);
+    const double middle = frame.timestamp + from + (i + 0.5) * part;
+    const std::optional<DeadReckoning::Velocity> velocity =
+        path_.VelocityAt(imu_, middle, rates[i]);
     if (!velocity.has_value()) return measured;
     velocities[i] = velocity->linear;
-    variance = velocity->covariance.trace() / 3.0;
+    variance = velocity->covariance.trace() / 3.0;  // largest at the end
   }
-  measured.sigma_linear = std::sqrt(variance);  // largest at the end
   const Line velocity = FitLine(velocities, from, part);
   measured.twist.linear = velocity.value;
   measured.twist.linear_acceleration = velocity.slope;
+  measured.sigma_linear = kPathErrsAlike * std::sqrt(variance);
   measured.rest_shift = velocity.rest;
   return measured;
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/geometry/twist.h"
 #include "tests/support/camera_with_imu.h"
 
 namespace rgbd_pose {
