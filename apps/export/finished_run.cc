@@ -1,5 +1,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -74,8 +75,17 @@ std::optional<Eigen::Vector3d> ReadUp(const fs::path& metrics, int segment) {
   const auto gravity = json.find("gravity");
   if (gravity == json.end() || !gravity->contains("up")) return std::nullopt;
   if (gravity->value("segment", 0) != segment) return std::nullopt;
-  const auto up = gravity->at("up").get<std::vector<double>>();
-  return Eigen::Vector3d(up.at(0), up.at(1), up.at(2));
+  const nlohmann::json& up = gravity->at("up");
+  const auto is_number = [](const nlohmann::json& value) {
+    return value.is_number();
+  };
+  if (up.size() != 3 || !std::all_of(up.begin(), up.end(), is_number)) {
+    throw InputError(metrics.string() +
+                     ": up of gravity must be three numbers; run again, or "
+                     "delete gravity");
+  }
+  return Eigen::Vector3d(up[0].get<double>(), up[1].get<double>(),
+                         up[2].get<double>());
 }
 
 // The frames of a source at the given times.

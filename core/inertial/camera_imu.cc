@@ -43,6 +43,10 @@ CameraImu::CameraImu(const ImuSensor& sensor)
     : noise_(sensor.calibration.noise.value_or(ImuNoise())),
       cam_from_imu_(sensor.calibration.cam_from_imu.value()),
       delay_s_(sensor.calibration.delay_s.value_or(0.0)) {
+  RequireSound(noise_.Check(), "inertial sensor: ");
+  if (!std::isfinite(delay_s_)) {
+    throw InputError("inertial sensor: its delay must be a number of seconds");
+  }
   State sigmas;
   const bool has_delay = sensor.calibration.delay_s.has_value();
   sigmas << Eigen::Vector3d::Constant(kBiasSigma),

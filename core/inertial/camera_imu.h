@@ -46,7 +46,8 @@ class CameraImu {
   static constexpr double kUnknownDelaySigma = 0.03;
   static constexpr double kMountingSigma = 0.05;
 
-  // The sensor must have a gyroscope whose mounting is known.
+  // The sensor must have a gyroscope whose mounting is known. Throws InputError
+  // if its noise or its delay cannot be used.
   explicit CameraImu(const ImuSensor& sensor);
 
   // Whether a sensor can be used: it has a gyroscope, its mounting is known.

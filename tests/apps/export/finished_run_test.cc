@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "apps/export/export_format.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {
@@ -68,6 +69,17 @@ TEST(FinishedRunTest, IsLevelByGravityOrElseByItsFirstCamera) {
   // A first camera that looks down by asin(0.6).
   expect(R"({"gravity": {"up": [0, -0.8, -0.6], "segment": 2}})", {0, 0.8, 0.6},
          {0, -0.6, 0.8});
+}
+
+TEST(FinishedRunTest, SaysThatUpMustBeThreeNumbers) {
+  for (const char* up : {R"("above")", "[0, 1]", R"([0, "a", 1])", "null"}) {
+    ExpectInputError(
+        [&] {
+          LevelIn(std::string(R"({"gravity": {"segment": 2, "up": )") + up +
+                  "}}");
+        },
+        {"metrics.json", "up of gravity must be three numbers"});
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "core/util/units.h"
 #include "tests/support/camera_with_imu.h"
+#include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
 namespace {
@@ -134,6 +135,18 @@ TEST(CameraImuTest, BelievesOnlyAxesThatTurnsHaveTested) {
   teach(6.0, 8.0, Eigen::Vector3d::UnitX());
   EXPECT_LT(sigma(6.0), 0.03 * kRate * kStep);
   EXPECT_TRUE(imu.is_trusted()) << imu.doubt();
+}
+
+TEST(CameraImuTest, RefusesNoiseAndDelaysThatCannotBe) {
+  ImuSensor sensor;
+  sensor.has_gyro = true;
+  sensor.calibration.cam_from_imu = Rigid3d();
+  sensor.calibration.delay_s = std::nan("");
+  ExpectInputError([&] { CameraImu imu(sensor); }, {"delay"});
+  sensor.calibration.delay_s = 0.0;
+  sensor.calibration.noise = ImuNoise();
+  sensor.calibration.noise->gyro_density = -1.0;
+  ExpectInputError([&] { CameraImu imu(sensor); }, {"inertial sensor"});
 }
 
 TEST(CameraImuTest, OneWrongPoseDoesNotRuinIt) {
