@@ -68,9 +68,10 @@ double VelocityPrior::SigmaLinear() const {
 Twist VelocityPrior::Fused(const Twist& expected) const {
   if (!measured.has_value()) return expected;
   const Twist& seen = measured->twist;
+  const double share = ShareOfExpected(sigma_linear, measured->sigma_linear);
   Twist fused = seen;
-  fused.linear += ShareOfExpected(sigma_linear, measured->sigma_linear) *
-                  (expected.linear - seen.linear);
+  fused.linear += share * (expected.linear - seen.linear);
+  fused.linear_acceleration *= 1.0 - share;
   return fused;
 }
 

@@ -49,9 +49,9 @@ struct VelocityPrior {
   double SigmaAngular() const;
   double SigmaLinear() const;
 
-  // What an expected velocity becomes by what was measured: its angular part,
-  // as no history foresees a sudden turn, the mean of both linear parts,
-  // weighted with their standard deviations, and the accelerations.
+  // What an expected velocity, without accelerations, becomes by what was
+  // measured: the angular part of that, as no history foresees a sudden turn,
+  // and the mean of both linear parts, weighted with standard deviations.
   Twist Fused(const Twist& expected) const;
 
   // Covariance of the velocity (angular, then linear) according to which the
