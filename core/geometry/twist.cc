@@ -10,8 +10,9 @@ Twist Twist::After(double seconds) const {
 }
 
 Twist Twist::Mean(double seconds) const {
-  const Twist mean = After(0.5 * seconds);
-  return {mean.angular, mean.linear};
+  const double half = 0.5 * seconds;
+  return {angular + half * angular_acceleration,
+          linear + half * linear_acceleration};
 }
 
 Rigid3d Twist::MotionDuring(double seconds) const {

@@ -42,9 +42,13 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
   constexpr int kDepthSteps = 3;
   const Twist& twist = timing.twist;
   const double seconds = timing.color.RowTime(row, camera.height);
+  const Twist mean = twist.Mean(seconds);
+  const auto at_stamp = [&](double depth_of_row) {
+    return mean.MovedPoint(ray * depth_of_row, -seconds);
+  };
   DepthSample sample;
   Eigen::Vector2d in_depth(0.0, row), in_depth_place;
-  Eigen::Vector3d point = twist.MovedBack(ray * depth, seconds);
+  Eigen::Vector3d point = at_stamp(depth);
   for (int step = 0; step < kDepthSteps; ++step) {
     Eigen::Vector3d measured;
     in_depth =
@@ -54,7 +58,7 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
     if (sample.depth == 0.0) break;
     const double change = sample.depth - measured.z();
     depth += change;
-    point = twist.MovedBack(ray * depth, seconds);
+    point = at_stamp(depth);
     if (std::abs(change) < kSmallChange * depth) break;
   }
   Observation seen;
