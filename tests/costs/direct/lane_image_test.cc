@@ -36,13 +36,12 @@ Camera TestCamera(TestLens lens) {
 
 const std::vector<Shutter> kShutters = {
     {-0.0075, 0.028}, {0.01, -0.03}, {0.015, 0.0}, {0.0, 0.02}};
-const std::vector<Twist> kTwists = {{{0.8, -0.5, 0.6}, {0.0, 0.0, 0.0}},
-                                    {{0.0, 0.0, 0.0}, {-0.3, 0.5, 0.4}},
-                                    {{-0.5, 0.7, 0.4}, {0.6, -0.4, -0.5}},
-                                    {{-0.5, 0.7, 0.4},
-                                     {0.6, -0.4, -0.5},
-                                     {12.0, 15.0, -10.0},
-                                     {-5.0, 6.0, 4.0}}};
+// The last one accelerates as a hand does.
+const std::vector<Twist> kTwists = {
+    {{0.8, -0.5, 0.6}, {0.0, 0.0, 0.0}},
+    {{0.0, 0.0, 0.0}, {-0.3, 0.5, 0.4}},
+    {{-0.5, 0.7, 0.4}, {0.6, -0.4, -0.5}},
+    {{-0.5, 0.7, 0.4}, {0.6, -0.4, -0.5}, {5.0, 7.0, -4.0}, {-2.5, 3.0, 2.0}}};
 
 std::vector<Vector3d> Points(const Camera& camera) {
   std::vector<Vector3d> points;
