@@ -48,13 +48,15 @@ constexpr int kParts = 4;
 // A velocity that changes at a constant rate.
 struct Line {
   Eigen::Vector3d value;  // at the stamp
-  Eigen::Vector3d slope;
-  double rest = 0.0;  // what it lacks, summed up over time; root of the mean
-                      // square
+  Eigen::Vector3d slope;  // per second
+
+  // How far the motion is from that at this velocity: the root of the mean
+  // square of the distances at the ends of the parts.
+  double rest = 0.0;
 };
 
-// `values`: in the middle of parts that last `part` seconds, the first of which
-// begins `from` seconds after the stamp.
+// Fits a line to the mean velocities of parts by least squares. Each part lasts
+// `part` seconds, and the first begins `from` seconds after the stamp.
 Line FitLine(const std::array<Eigen::Vector3d, kParts>& values, double from,
              double part) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
