@@ -64,8 +64,12 @@ bool Odometry::Follow(const PreparedFrame& measured,
     state_.timing_covariance = TimingCovariance(
         measured, TwistOf(state_.cur_from_prev, state_.interval));
   }
+  if (state_.has_shutter) {
+    state_.shutter_tracking.Accept(tracked);
+    state_.timing_covariance +=
+        state_.shutter_tracking.acceleration_covariance();
+  }
   TakeMotion(result);
-  if (state_.has_shutter) state_.shutter_tracking.Accept(tracked);
   if (state_.earlier_segment.has_value()) {
     ReturnToEarlierSegment(*frame, result);
   }

@@ -116,9 +116,12 @@ void ShutterTracking::Update(const TrackingResult& refined) {
 
 void ShutterTracking::Accept(const TrackingResult& refined) {
   early_.reset();
+  acceleration_covariance_.setZero();
   if (found_.frame.has_value() && found_.frame->twist.has_value()) {
     velocity_.Add(*found_.frame->twist, found_.frame->timestamp,
                   found_.frame->color_shutter.offset);
+    acceleration_covariance_ = MotionCovarianceOfAcceleration(
+        found_.frame->Timing(), velocity_.change());
   }
   between_ = found_.between;
   interval_ = found_.interval;
@@ -183,6 +186,13 @@ bool ShutterTracking::MoveReference(const Twist& since,
   const Twist& twist = smoothed.twist;
   Frame& frame = early_->frame;
   velocity_.Correct(twist, frame.timestamp);
+  if (early_->before.has_value()) {
+    const Twist change =
+        (2.0 / (early_->interval + interval)) * (since - *early_->before);
+    reference->timing_covariance =
+        early_->timing_covariance +
+        MotionCovarianceOfAcceleration(frame.Timing(twist), change);
+  }
   if (LargestFlow(tracker_->images().camera, frame.Timing(twist),
                   twist - frame.twist.value_or(Twist())) < kSmallFlowPx) {
     return false;

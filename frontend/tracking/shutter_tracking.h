@@ -65,6 +65,12 @@ class ShutterTracking {
   // from it.
   void Accept(const TrackingResult& refined);
 
+  // What the change of velocity that it has seen adds to the covariance of its
+  // motion: rows are corrected with a constant velocity.
+  const MotionMatrix& acceleration_covariance() const {
+    return acceleration_covariance_;
+  }
+
   // Continues from a frame whose pose was found without Follow, after a loss.
   void Restart(const Frame& frame, const TrackingResult& tracked);
 
@@ -114,6 +120,7 @@ class ShutterTracking {
   double interval_ = 0.0;         // over this interval, s
   std::optional<TwistEstimate> found_velocity_;            // of the last frame
   MotionMatrix motion_covariance_ = MotionMatrix::Zero();  // in its axes
+  MotionMatrix acceleration_covariance_ = MotionMatrix::Zero();
   std::optional<EarlyReference> early_;
   Found found_;
 };

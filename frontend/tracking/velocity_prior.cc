@@ -36,6 +36,18 @@ double ShareOfExpected(double sigma, double measured_sigma) {
   return 1.0 / (1.0 + std::pow(sigma / measured_sigma, 2));
 }
 
+// Half of the mean squared time from the stamp, s^2, through which
+// accelerations move what is seen. Depth affects a motion little except along
+// the optical axis.
+double HalfSquare(const FrameTiming& timing) {
+  constexpr double kShareOfDepth = 0.2;
+  const Shutter& color = timing.color;
+  const double late = timing.depth.offset - color.offset;
+  return 0.5 *
+         (color.offset * color.offset + color.readout * color.readout / 12.0 +
+          kShareOfDepth * late * late);
+}
+
 }  // namespace
 
 MotionMatrix IndependentErrors(double turn, double shift) {
@@ -101,14 +113,7 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
 
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                             const VelocityPrior& prior) {
-  // Depth affects a motion little except along the optical axis.
-  constexpr double kShareOfDepth = 0.2;
-  const Shutter& color = timing.color;
-  const double late = timing.depth.offset - color.offset;
-  // Half of the mean squared time from the stamp, s^2.
-  const double half_square = 0.5 * (color.offset * color.offset +
-                                    color.readout * color.readout / 12.0 +
-                                    kShareOfDepth * late * late);
+  const double half_square = HalfSquare(timing);
   const double per_second = 1.0 / (kSigmaOfChange * prior.interval);
   const double scale = half_square * per_second;
   double turn = scale * prior.sigma_angular;
@@ -120,6 +125,17 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
     shift += seen.rest_shift;
   }
   return IndependentErrors(turn, shift);
+}
+
+MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
+                                            const Twist& change) {
+  const Eigen::Vector3d angular =
+      change.angular - timing.twist.angular_acceleration;
+  const Eigen::Vector3d linear =
+      change.linear - timing.twist.linear_acceleration;
+  const double half_square = HalfSquare(timing);
+  return IndependentErrors(half_square * angular.norm(),
+                           half_square * linear.norm());
 }
 
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
@@ -152,13 +168,13 @@ MotionMatrix VelocityModel::CovarianceInTheMiddle(double interval) const {
 }
 
 void VelocityModel::Add(const Twist& twist, double timestamp, double middle) {
+  change_ = Twist();
   if (last_.has_value() && timestamp > timestamp_) {
-    const Twist acceleration =
-        (1.0 / (timestamp - timestamp_)) * (twist - *last_);
-    angular_square_ += kShareOfNew * (acceleration.angular.squaredNorm() / 3.0 -
-                                      angular_square_);
-    linear_square_ += kShareOfNew * (acceleration.linear.squaredNorm() / 3.0 -
-                                     linear_square_);
+    change_ = (1.0 / (timestamp - timestamp_)) * (twist - *last_);
+    angular_square_ +=
+        kShareOfNew * (change_.angular.squaredNorm() / 3.0 - angular_square_);
+    linear_square_ +=
+        kShareOfNew * (change_.linear.squaredNorm() / 3.0 - linear_square_);
   }
   // An acceleration that was measured is that of its frame alone.
   last_ = Twist{twist.angular, twist.linear};

@@ -84,6 +84,11 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                             const VelocityPrior& prior);
 
+// Returns what an acceleration adds that the frame was not corrected with.
+// `change`: of the velocity, in a second.
+MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
+                                            const Twist& change);
+
 // The camera's velocity from frame to frame.
 class VelocityModel {
  public:
@@ -113,6 +118,10 @@ class VelocityModel {
   // is the mean of those before and after it, over about `interval` s each.
   MotionMatrix CovarianceInTheMiddle(double interval) const;
 
+  // How much the velocity has changed since the frame before, per second; 0 if
+  // that is unknown.
+  const Twist& change() const { return change_; }
+
   // Adds the velocity of the next frame, which was corrected with it.
   void Add(const Twist& twist, double timestamp, double middle);
 
@@ -129,6 +138,7 @@ class VelocityModel {
  private:
   std::optional<Twist> last_;
   double timestamp_ = 0.0;  // of the last velocity, s
+  Twist change_;            // per second
   Rigid3d middle_from_last_;
   // Mean squares of the accelerations; initial values for a hand.
   double angular_square_ = 6.0 * 6.0;  // (rad/s^2)^2

@@ -124,6 +124,38 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   EXPECT_GT(prior().sigma_angular, at_first.sigma_angular);
 }
 
+// Rows are up to half a readout away from the stamp: the mean square is a
+// twelfth of the readout's.
+TEST(VelocityPriorTest, AccelerationsMoveWhatRowsSee) {
+  constexpr double kReadout = 0.028;
+  FrameTiming timing;
+  timing.color.readout = timing.depth.readout = kReadout;
+  const Twist change = {{30.0, -40.0, 0.0}, {0.0, 3.0, 4.0}};
+  const auto sigmas = [&] {
+    const MotionMatrix covariance =
+        MotionCovarianceOfAcceleration(timing, change);
+    return Eigen::Vector2d(covariance(1, 1), covariance(4, 4)).cwiseSqrt();
+  };
+  const double half_square = kReadout * kReadout / 24.0;
+  EXPECT_NEAR(sigmas()[0], 50.0 * half_square, kTwistRounding);
+  EXPECT_NEAR(sigmas()[1], 5.0 * half_square, kTwistRounding);
+  timing.color.offset = timing.depth.offset = 0.01;
+  EXPECT_NEAR(sigmas()[0], 50.0 * (half_square + 0.5e-4), kTwistRounding);
+  timing.twist.angular_acceleration = change.angular;
+  timing.twist.linear_acceleration = change.linear;
+  EXPECT_EQ(sigmas().norm(), 0.0) << "the frame was corrected with it";
+}
+
+TEST(VelocityPriorTest, KnowsHowItChanged) {
+  VelocityModel model;
+  model.Add(kPriorTwist, 1.0, 0.0);
+  ExpectNear(model.change(), Twist());
+  model.Add(1.5 * kPriorTwist, 1.5, 0.0);
+  ExpectNear(model.change(), kPriorTwist);
+  model.Reset();
+  ExpectNear(model.change(), Twist());
+}
+
 TEST(VelocityPriorTest, VelocitiesAreOutdatedAfterHalfASecond) {
   VelocityModel model;
   EXPECT_FALSE(model.IsOutdated(100.0));
