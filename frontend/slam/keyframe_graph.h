@@ -89,12 +89,17 @@ class KeyframeGraph {
   // Adds a pair within a segment.
   void AddPair(const RelativePose& edge, bool is_tracked, bool is_loop = false);
 
-  // Says which way is up in the axes of a keyframe (of length 1), with a sigma
-  // (rad): its tilt in the world is measured then. Which way is up in the world
-  // of a segment is estimated with the poses.
-  void SetUp(int at, const Eigen::Vector3d& up_in_cam, double sigma) {
-    nodes_[at].up = {up_in_cam, sigma};
-  }
+  // Which way is up in the axes of a keyframe.
+  struct Up {
+    Eigen::Vector3d in_cam;  // of length 1
+    double sigma = 0.0;      // of its angle, rad
+  };
+
+  // Says which way is up: the tilt of the keyframe in the world is measured
+  // then. Which way is up in the world of a segment is estimated with the
+  // poses.
+  void SetUp(int at, const Up& up) { nodes_[at].up = up; }
+  const std::optional<Up>& up(int at) const { return nodes_[at].up; }
 
   // Whether a motion is consistent with a path of other pairs: chi^2 with 6
   // degrees of freedom is below its 99.9 % quantile. False without a path.
@@ -140,11 +145,6 @@ class KeyframeGraph {
   double proportional_error() const { return proportional_error_; }
 
  private:
-  // Which way is up in the axes of a keyframe, and its sigma, rad.
-  struct Up {
-    Eigen::Vector3d in_cam;
-    double sigma = 0.0;
-  };
   struct Node {
     Rigid3d map_from_cam;
     int segment = 0;

@@ -64,6 +64,18 @@ std::string KeyframeMap::Check() const {
       return name + "the covariance must be symmetric and positive definite";
     }
   }
+  std::set<int> with_up;
+  for (const MapUp& up : ups) {
+    const std::string name = Format("up of keyframe %d: ", up.keyframe);
+    if (ids.count(up.keyframe) == 0) return name + "there is no such keyframe";
+    if (!with_up.insert(up.keyframe).second) return name + "appears twice";
+    if (!(std::abs(up.in_cam.norm() - 1.0) <= kMaxLengthError)) {
+      return name + "it must be finite and of unit length";
+    }
+    if (!(up.sigma > 0.0 && std::isfinite(up.sigma))) {
+      return name + "sigma must be positive";
+    }
+  }
   return "";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,25 @@ struct MapEdge : RelativePose {
   bool is_tracked = false;  // measured by the odometry, not by the mapper
 };
 
+// Which way is up in the axes of a keyframe, as an accelerometer has measured.
+struct MapUp {
+  int keyframe = 0;                                   // its id
+  Eigen::Vector3d in_cam = Eigen::Vector3d::UnitY();  // of length 1
+  double sigma = 0.0;                                 // of its angle, rad
+};
+
 // A map of a place: keyframes and the motions measured between them. Contains
 // everything needed for relocalisation, to extend the map and to correct it.
 struct KeyframeMap {
   Camera camera;                    // of all keyframes
   std::vector<Keyframe> keyframes;  // compressed, in any order
   std::vector<MapEdge> edges;       // in any order
+  std::vector<MapUp> ups;           // at most one of a keyframe, in any order
 
   // A one-line description of an error, or empty: duplicate ids, images of
-  // another size than the camera's, edges to missing keyframes, values that are
-  // not finite, covariances that are not symmetric and positive definite.
+  // another size than the camera's, edges or directions of missing keyframes,
+  // values that are not finite, covariances that are not symmetric and positive
+  // definite.
   std::string Check() const;
 
   // A one-line description of a difference between `other` and the camera of

@@ -19,7 +19,8 @@ constexpr char kColumns[] =
     "# camera width height fx fy cx cy k1 k2 p1 p2 k3 (k4 k5 k6 lens)\n"
     "# keyframe id segment timestamp depth_delay depth_scale tx ty tz qx qy "
     "qz qw gray depth (timing_covariance (6 x 6))\n"
-    "# edge ref cur tx ty tz qx qy qz qw covariance (6 x 6) (tracked)\n";
+    "# edge ref cur tx ty tz qx qy qz qw covariance (6 x 6) (tracked)\n"
+    "# up keyframe x y z sigma\n";
 
 constexpr char kTracked[] = "tracked";  // the last word of such an edge
 
@@ -109,6 +110,13 @@ void PassEdge(Line* line, Edge* edge) {
   PassCovariance(line, &edge->covariance);
 }
 
+template <typename Line, typename Direction>
+void PassUp(Line* line, Direction* up) {
+  line->Integer(&up->keyframe);
+  for (int i = 0; i < 3; ++i) line->Number(&up->in_cam[i]);
+  line->Number(&up->sigma);
+}
+
 void ReadCamera(LineReader* line, Camera* camera) {
   const bool is_usual = line->Count() <= 3 + kNumUsualParameters;
   const size_t count =
@@ -194,6 +202,11 @@ std::string FormatMapIndex(const KeyframeMap& map) {
     if (edge.is_tracked) line.Word(kTracked);
     text += line.text + '\n';
   }
+  for (const MapUp& up : map.ups) {
+    LineWriter line = {"up"};
+    PassUp(&line, &up);
+    text += line.text + '\n';
+  }
   return text + ChecksumLine(text);
 }
 
@@ -218,8 +231,11 @@ KeyframeMap ParseMapIndex(std::string_view text, const std::string& path) {
       edge.is_tracked = line.line.words.back() == kTracked;
       line.Require(edge.is_tracked ? 47 : 46);
       PassEdge(&line, &edge);
+    } else if (line.Kind() == "up") {
+      line.Require(6);
+      PassUp(&line, &map.ups.emplace_back());
     } else {
-      line.Fail("'" + line.Kind() + "' must be camera, keyframe or edge");
+      line.Fail("'" + line.Kind() + "' must be camera, keyframe, edge or up");
     }
   }
   if (lines.size() < 2) throw InputError(path + ": has no camera");

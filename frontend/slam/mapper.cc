@@ -81,6 +81,7 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
     numbered.cur = numbers_.at(edge.cur);
     graph_.AddPair(numbered, edge.is_tracked);
   }
+  for (const MapUp& up : map.ups) SetUp(up);
 }
 
 MapUpdate Mapper::Add(Keyframe added,
@@ -258,6 +259,9 @@ KeyframeMap Mapper::Map(bool as_solved) const {
     map.keyframes.push_back(keyframes_[at]);
     map.keyframes.back().segment = graph_.segment(at);
     map.keyframes.back().world_from_cam = graph_.pose(at);
+    if (const auto& up = graph_.up(at); up.has_value()) {
+      map.ups.push_back({keyframes_[at].id, up->in_cam, up->sigma});
+    }
   }
   for (const KeyframePair& pair : graph_.pairs()) {
     MapEdge edge = {pair.edge, pair.is_tracked};

@@ -98,10 +98,10 @@ class Mapper {
   // Relocalises a lost frame in the whole map; returns a keyframe of the place.
   std::optional<Keyframe> Find(const PreparedFrame& lost);
 
-  // Says which way is up in the axes of a keyframe, by id:
-  // KeyframeGraph::SetUp. Without effect for one that was removed.
-  void SetUp(int id, const Eigen::Vector3d& up_in_cam, double sigma) {
-    graph_.SetUp(numbers_.at(id), up_in_cam, sigma);
+  // Says which way is up: KeyframeGraph::SetUp. Without effect for a keyframe
+  // that was removed.
+  void SetUp(const MapUp& up) {
+    graph_.SetUp(numbers_.at(up.keyframe), {up.in_cam, up.sigma});
   }
 
   // Optimises all poses.

@@ -30,6 +30,7 @@ void Slam::Load(KeyframeMap map, bool is_held) {
     edge.cur += first_id_;
     links_.push_back({edge.ref, edge.cur, false});
   }
+  for (MapUp& up : map.ups) up.keyframe += first_id_;
   mapper_.Load(map, is_held);
   for (const Keyframe& keyframe : map.keyframes) {
     // In the odometry, ids of loaded keyframes stay below -1.

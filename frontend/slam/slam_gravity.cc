@@ -55,8 +55,8 @@ void Slam::MeasureUps() {
       const double variance =
           overlap * std::pow(gravity.scatter, 2) +
           static_cast<double>(all.size()) * std::pow(gravity.bias_effect, 2);
-      mapper_.SetUp(up.keyframe, up.in_cam.normalized(),
-                    std::sqrt(variance) / gravity.acceleration);
+      mapper_.SetUp({up.keyframe, up.in_cam.normalized(),
+                     std::sqrt(variance) / gravity.acceleration});
     }
   }
 }

@@ -26,7 +26,8 @@ inline Frame NoiseFrame(int seed) {
 }
 
 // A map of `keyframes` keyframes in two segments, each joined to the next.
-// Frames and numbers depend on the seed and use all their digits.
+// Every second one knows which way is up. Frames and numbers depend on the seed
+// and use all their digits.
 inline KeyframeMap NoiseMap(int keyframes, int seed) {
   KeyframeMap map;
   map.camera = {kMapWidth, kMapHeight, 30.1, 29.9, 15.5, 11.5, 0.1, -1.0 / 3.0};
@@ -43,6 +44,11 @@ inline KeyframeMap NoiseMap(int keyframes, int seed) {
                              {},
                              StoredImages(NoiseFrame(100 * seed + i)),
                              MotionMatrix::Constant(i * M_PI)});
+    if (i % 2 == 1) {
+      map.ups.push_back(
+          {id, (rotation.normalized() * Eigen::Vector3d::UnitY()).normalized(),
+           0.01 / 3.0});
+    }
     if (i == 0) continue;
     const MotionMatrix root = MotionMatrix::Identity() / (3.0 + i) +
                               MotionMatrix::Constant(1e-5 * M_PI);
@@ -61,7 +67,7 @@ inline bool IsSameMotion(const Rigid3d& a, const Rigid3d& b) {
 inline bool IsSameMap(const KeyframeMap& a, const KeyframeMap& b) {
   if (!a.CheckCamera(b.camera).empty() ||
       a.keyframes.size() != b.keyframes.size() ||
-      a.edges.size() != b.edges.size()) {
+      a.edges.size() != b.edges.size() || a.ups.size() != b.ups.size()) {
     return false;
   }
   for (size_t i = 0; i < a.keyframes.size(); ++i) {
@@ -84,6 +90,14 @@ inline bool IsSameMap(const KeyframeMap& a, const KeyframeMap& b) {
     if (x.is_tracked != y.is_tracked || x.ref != y.ref || x.cur != y.cur ||
         !IsSameMotion(x.cur_from_ref, y.cur_from_ref) ||
         x.covariance != y.covariance) {
+      return false;
+    }
+  }
+  for (size_t i = 0; i < a.ups.size(); ++i) {
+    const MapUp& x = a.ups[i];
+    const MapUp& y = b.ups[i];
+    if (x.keyframe != y.keyframe || x.in_cam != y.in_cam ||
+        x.sigma != y.sigma) {
       return false;
     }
   }

@@ -64,7 +64,7 @@ TEST(KeyframeGraphTest, GravityHoldsTheTilt) {
                                 random.Normal(0.001));
     const Eigen::Vector3d up =
         held.truth[i].rotation.conjugate() * Eigen::Vector3d::UnitY() + error;
-    held.graph.SetUp(i, i == 20 ? -up.normalized() : up.normalized(), 0.001);
+    held.graph.SetUp(i, {i == 20 ? -up.normalized() : up.normalized(), 0.001});
   }
   ASSERT_EQ(drifted.graph.SolveAll(), "");
   ASSERT_EQ(held.graph.SolveAll(), "");
@@ -87,8 +87,8 @@ TEST(KeyframeGraphTest, GravityHoldsTheTiltOfTheNewest) {
   Circle drifted, held;
   for (int i = 0; i < kPoses; ++i) {
     held.graph.SetUp(
-        i, held.truth[i].rotation.conjugate() * Eigen::Vector3d::UnitY(),
-        i < kPoses / 2 ? 0.0001 : 0.001);
+        i, {held.truth[i].rotation.conjugate() * Eigen::Vector3d::UnitY(),
+            i < kPoses / 2 ? 0.0001 : 0.001});
   }
   ASSERT_EQ(drifted.graph.SolveNear(kPoses - 1), "");
   ASSERT_EQ(held.graph.SolveNear(kPoses - 1), "");

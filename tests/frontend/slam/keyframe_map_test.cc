@@ -44,6 +44,16 @@ TEST(KeyframeMapTest, SaysWhatIsWrong) {
          map->edges[1].cur_from_ref.rotation.w() = INFINITY;
        },
        "edge from keyframe 4 to 11: the motion"},
+      {[](KeyframeMap* map) { map->ups[0].keyframe = 5; },
+       "up of keyframe 5: there is no such keyframe"},
+      {[](KeyframeMap* map) { map->ups[1].keyframe = 4; },
+       "up of keyframe 4: appears twice"},
+      {[](KeyframeMap* map) { map->ups[1].in_cam.x() = NAN; },
+       "up of keyframe 18: it must be finite"},
+      {[](KeyframeMap* map) { map->ups[1].in_cam *= 1.1; },
+       "up of keyframe 18: it must be finite and of unit length"},
+      {[](KeyframeMap* map) { map->ups[0].sigma = 0.0; },
+       "up of keyframe 4: sigma must be positive"},
   };
   for (const auto& c : kCases) {
     KeyframeMap map = NoiseMap(4, 0);

@@ -78,7 +78,8 @@ TEST_F(MapFolderTest, GivesBackWhatWasSaved) {
   EXPECT_EQ(ReadTextFile(map_ + "/map.txt"), index);
 }
 
-// Maps from before keyframes had a timing covariance and edges an origin.
+// Maps from before keyframes had a timing covariance and a direction, and edges
+// an origin.
 TEST_F(MapFolderTest, ReadsMapsWithoutTheNewerWords) {
   KeyframeMap saved = NoiseMap(5, 0);
   SaveMap(map_, saved);
@@ -87,11 +88,13 @@ TEST_F(MapFolderTest, ReadsMapsWithoutTheNewerWords) {
   older = std::regex_replace(
       older, std::regex("(\nkeyframe( [^ \n]+){14})[^\n]*"), "$1");
   older = std::regex_replace(older, std::regex(" tracked\n"), "\n");
+  older = std::regex_replace(older, std::regex("\nup [^\n]*"), "");
   WriteFileAtomically(map_ + "/map.txt", older + ChecksumLine(older));
   for (Keyframe& keyframe : saved.keyframes) {
     keyframe.timing_covariance.setZero();
   }
   for (MapEdge& edge : saved.edges) edge.is_tracked = false;
+  saved.ups.clear();
   EXPECT_TRUE(IsSameMap(LoadMap(map_), saved));
 }
 
@@ -235,7 +238,7 @@ TEST_F(MapFolderTest, RefusesWrongLines) {
        "map.txt:2: lens 'wide' must be 'rational' or 'equidistant'"},
       {"camera 3.5" + kCamera.substr(9), "map.txt:2: '3.5' must be an integer"},
       {kCamera + "landmark 1\n",
-       "map.txt:3: 'landmark' must be camera, keyframe or edge"},
+       "map.txt:3: 'landmark' must be camera, keyframe, edge or up"},
       {kCamera + "keyframe 0" + kPose + kName + " ../secret\n",
        "map.txt:3: '../secret' must be an image's checksum"},
       {kCamera + "keyframe 9999999999" + kPose + kName + " " + kName + "\n",
@@ -243,6 +246,7 @@ TEST_F(MapFolderTest, RefusesWrongLines) {
       {kCamera + "keyframe x" + kPose + kName + " " + kName + "\n",
        "map.txt:3: 'x' is not a finite number for a keyframe"},
       {kCamera + "edge 0 1 nan\n", "map.txt:3: a line 'edge' must have 46"},
+      {kCamera + "up 0 0 1 0\n", "map.txt:3: a line 'up' must have 6 words"},
       {"camera 32 24 0" + kCamera.substr(15), "map.txt: camera: fx and fy"},
   };
   for (const auto& c : kCases) {

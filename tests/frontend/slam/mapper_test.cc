@@ -59,5 +59,16 @@ TEST(MapperTest, TrackedEdgesJoinSegments) {
   EXPECT_NEAR(map.keyframes[0].world_from_cam.translation.z(), -4.0, 1e-9);
 }
 
+TEST(MapperTest, AMapKeepsWhichWayIsUp) {
+  KeyframeMap map = NoiseMap(5, 0);
+  ASSERT_EQ(map.ups.size(), 2u);
+  Mapper mapper(MappingOptions(),
+                MakeTracker(OdometrySettings(), {map.camera}));
+  mapper.Load(map, /*is_held=*/false);
+  mapper.SetUp({map.keyframes[4].id, Eigen::Vector3d::UnitZ(), 0.02});
+  map.ups.push_back({map.keyframes[4].id, Eigen::Vector3d::UnitZ(), 0.02});
+  EXPECT_TRUE(IsSameMap(mapper.Map(), map));
+}
+
 }  // namespace
 }  // namespace rgbd_pose
