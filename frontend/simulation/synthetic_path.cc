@@ -150,12 +150,13 @@ Rigid3d Walk(double t, double /*duration*/) {
                  Vector3d(0, 0, x));
 }
 
-// Along Xyz, with turns to the left and back about the vertical.
+// Along Xyz, with half turns to the left and back about the vertical.
+template <int kDegreesPerSecond>
 Rigid3d WhipPan(double t, double duration) {
-  constexpr double kRate = 300.0 * kRadiansPerDegree;  // rad/s
-  constexpr double kSpinUp = 0.1;                      // s, the same to stop
-  constexpr double kPan = 0.5 + 2.0 * kSpinUp;         // s
-  constexpr double kPeriod = 3.0;                      // s, start to start
+  constexpr double kRate = kDegreesPerSecond * kRadiansPerDegree;  // rad/s
+  constexpr double kSpinUp = 0.1;                  // s, the same to stop
+  constexpr double kPan = M_PI / kRate + kSpinUp;  // s
+  constexpr double kPeriod = 3.0;                  // s, start to start
   const double pan = std::floor(t / kPeriod);
   const bool is_back = std::fmod(pan, 2.0) != 0.0;
   const double s =
@@ -292,7 +293,8 @@ constexpr Named<SyntheticPath> kPaths[] = {
     {"still", Still},
     {"walk", Walk},
     {"handheld", Handheld},
-    {"whip_pan", WhipPan},
+    {"whip_pan", WhipPan<300>},
+    {"whip_pan_fast", WhipPan<600>},
     {"table", TableTour},
     {"two_rooms", TwoRoomsTour},
     {"twin_corridors", TwinCorridorsTour}};

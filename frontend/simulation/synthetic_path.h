@@ -29,6 +29,7 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //             deg/s (0.96 and 87 reached within the first 5 s)
 //   whip_pan  along xyz, with half a turn to the left or back every 3 s: 0.5 s
 //             at 300 deg/s and 0.1 s each to start and to stop, first at 1.15 s
+//   whip_pan_fast  the same at 600 deg/s: 0.2 s, first at 1.3 s
 // Carried by hand through the scene of the same name, at up to 0.6 m/s
 // and 40 deg/s:
 //   table           19 m around the desks in 56 s, repeatedly

@@ -175,6 +175,15 @@ TEST(SyntheticPathTest, WhipPansTurnHalfRoundAndBack) {
   EXPECT_LT(peaks.speed, 0.4);  // its centre moves like path xyz
 }
 
+TEST(SyntheticPathTest, FastWhipPansTurnAsFarInLessTime) {
+  const SyntheticPath path = FindSyntheticPath("whip_pan_fast");
+  EXPECT_NEAR(
+      path(1.3, 10.0).rotation.angularDistance(path(1.7, 10.0).rotation), M_PI,
+      0.1);
+  EXPECT_NEAR(FindPeaks("whip_pan_fast", 10.0).turn_rate,
+              600.0 * kRadiansPerDegree, 0.1);
+}
+
 struct Tour {
   const char* name;
   double seconds;  // until the camera is back at its start
@@ -218,8 +227,9 @@ TEST(SyntheticPathTest, UnknownNameListsTheNames) {
     EXPECT_THAT(error.what(), testing::HasSubstr("spiral"));
     EXPECT_THAT(
         error.what(),
-        testing::HasSubstr("xyz, pan_tilt, circle, still, walk, handheld, "
-                           "whip_pan, table, two_rooms, twin_corridors"));
+        testing::HasSubstr(
+            "xyz, pan_tilt, circle, still, walk, handheld, "
+            "whip_pan, whip_pan_fast, table, two_rooms, twin_corridors"));
   }
 }
 
