@@ -141,6 +141,8 @@ std::optional<DeadReckoning::Motion> InertialTracking::Since(
 void InertialTracking::Learn(const TrackedFrame& frame) {
   if (frame.status != TrackingStatus::kOk) {
     imu_.ForgetBefore(frame.timestamp - kLongestInterval);
+    // A turn that the sensor itself has measured teaches nothing about it.
+    if (frame.source == TrackingSource::kInertial) start_.reset();
     return;
   }
   if (frame.segment != segment_ || frame.relocalised) {

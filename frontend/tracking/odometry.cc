@@ -33,6 +33,11 @@ constexpr double kShareOfDepth = 0.4;
 // much (m per rad): a part of the displacement of objects in a room.
 constexpr double kShiftOfTurn = 0.5;
 
+// What the inertial sensor alone has placed becomes a reference only if the
+// camera has turned less than this since the frame before, rad: at 30 frames/s
+// 170 degrees/s.
+constexpr double kMaxTurnOfNewPlace = 0.1;
+
 // Neighbouring features err alike where the motion is a compromise between
 // those of two parts of the view. Cameras differ in how much they do so anyway:
 // a frame is compared with what nine tenths of the frames before stayed below.
@@ -158,8 +163,15 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                    state_.covariance};
   }
   state_.last.reset();
+  // After a quick turn the images may show another place, from where the next
+  // frame is tracked once the turn is slow enough.
+  const bool is_blurred =
+      result.source == TrackingSource::kInertial &&
+      !(state_.turn.has_value() &&
+        state_.turn->cur_from_prev.angularDistance(
+            Eigen::Quaterniond::Identity()) <= kMaxTurnOfNewPlace);
   if (result.status != TrackingStatus::kLost && !result.is_reference &&
-      result.source != TrackingSource::kInertial) {
+      !is_blurred) {
     state_.last = {result.index,
                    state_.segment,
                    result.world_from_cam,

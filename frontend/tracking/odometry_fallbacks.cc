@@ -108,6 +108,10 @@ bool Odometry::GoOnBlindly(const Frame& frame, TrackedFrame* result) {
         TwistOf(state_.cur_from_prev, state_.interval), frame.timestamp,
         frame.color_shutter.offset);
   }
+  if (const auto measured = inertial_->TwistDuring(frame);
+      state_.has_shutter && measured.has_value()) {
+    state_.twist = measured->twist;
+  }
   result->status = TrackingStatus::kDegraded;
   result->reason = "no image: inertial sensor only";
   result->source = TrackingSource::kInertial;
