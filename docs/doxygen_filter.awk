@@ -20,6 +20,9 @@ function is_described_elsewhere(line) {
          line ~ / override( \{.*|;)$/ ||
          line ~ /^ *(bool (Residual|Jacobian)|static [A-Za-z]+Factor Sample|static std::vector<std::vector<double>> Near)\(/
 }
+# Doxygen would take this for an address.
+{ gsub(/file:line/, "file and line") }
+
 {
   place = index($0, "//")
   before = place ? substr($0, 1, place - 1) : $0
