@@ -87,17 +87,21 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
 }
 
 bool Odometry::GoOnBlindly(const Frame& frame, TrackedFrame* result) {
-  if (!inertial_.has_value() || state_.is_lost ||
-      state_.seen.reference != state_.reference->id) {
+  if (!inertial_.has_value() || state_.is_lost) return false;
+  // A doubtful frame may have become the reference since.
+  OdometryKeyframe* const reference = keyframes_.Find(state_.seen.reference);
+  if (reference == nullptr || reference->segment != state_.segment) {
     return false;
   }
   const std::optional<DeadReckoning::Motion> since_seen =
       inertial_->Since(frame.timestamp);
   if (!since_seen.has_value()) return false;
+  const Rigid3d world_from_prev = WorldFromCam();
   const Rigid3d& cur_from_seen = since_seen->cur_from_last;
   const Rigid3d cur_from_ref = cur_from_seen * state_.seen.cur_from_ref;
-  state_.cur_from_prev = cur_from_ref * state_.cur_from_ref.Inverse();
+  state_.reference = reference;
   state_.cur_from_ref = cur_from_ref;
+  state_.cur_from_prev = WorldFromCam().Inverse() * world_from_prev;
   state_.covariance =
       ComposedCovariance(cur_from_seen, since_seen->covariance,
                          state_.seen.cur_from_ref, state_.seen.covariance);
