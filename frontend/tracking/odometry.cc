@@ -33,16 +33,22 @@ constexpr double kShareOfDepth = 0.4;
 // much (m per rad): a part of the displacement of objects in a room.
 constexpr double kShiftOfTurn = 0.5;
 
-// What the inertial sensor alone has placed becomes a reference only if the
-// camera has turned less than this since the frame before, rad: at 30 frames/s
-// 170 degrees/s.
-constexpr double kMaxTurnOfNewPlace = 0.1;
-
 // Neighbouring features err alike where the motion is a compromise between
 // those of two parts of the view. Cameras differ in how much they do so anyway:
 // a frame is compared with what nine tenths of the frames before stayed below.
 constexpr double kMaxInflation = 4.0;
 constexpr double kInflationUp = 1.05, kInflationDown = 0.995;  // by each frame
+
+// Whether a turn from one frame to the next lets images show the same (at 30
+// frames/s up to 170 degrees/s), and starts or stops slowly enough to bend them
+// by less than a pixel. `acceleration`: see ShutterTracking.
+bool IsSlow(const CameraTurn& turn, const MotionMatrix& acceleration) {
+  constexpr double kLargestTurn = 0.1;    // rad
+  constexpr double kLargestBend = 0.002;  // rad
+  return turn.cur_from_prev.angularDistance(Eigen::Quaterniond::Identity()) <=
+             kLargestTurn &&
+         acceleration(0, 0) <= kLargestBend * kLargestBend;
+}
 
 }  // namespace
 
@@ -163,13 +169,12 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                    state_.covariance};
   }
   state_.last.reset();
-  // After a quick turn the images may show another place, from where the next
-  // frame is tracked once the turn is slow enough.
+  // What the inertial sensor alone has placed may show another place, from
+  // where the next frame is tracked once the camera turns slowly enough.
   const bool is_blurred =
       result.source == TrackingSource::kInertial &&
-      !(state_.turn.has_value() &&
-        state_.turn->cur_from_prev.angularDistance(
-            Eigen::Quaterniond::Identity()) <= kMaxTurnOfNewPlace);
+      !IsSlow(state_.turn.value_or(CameraTurn()),
+              state_.shutter_tracking.acceleration_covariance());
   if (result.status != TrackingStatus::kLost && !result.is_reference &&
       !is_blurred) {
     state_.last = {result.index,

@@ -206,6 +206,7 @@ class Odometry {
   // Moves a pose that images do not show by the inertial sensor. Returns false,
   // with unchanged state, if that does not know the way.
   bool GoOnBlindly(const Frame& frame, TrackedFrame* result);
+  void GoOnWithVelocity(const Frame& frame);
   void HandleLost(const PreparedFrame& frame,
                   const std::optional<Prediction>& prediction,
                   TrackedFrame* result);

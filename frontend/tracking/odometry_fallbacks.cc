@@ -105,17 +105,8 @@ bool Odometry::GoOnBlindly(const Frame& frame, TrackedFrame* result) {
   state_.covariance =
       ComposedCovariance(cur_from_seen, since_seen->covariance,
                          state_.seen.cur_from_ref, state_.seen.covariance);
-  // The next frame with an image goes on with this velocity.
   state_.shutter_tracking.HandleLost();
-  if (state_.has_shutter && state_.interval > 0.0) {
-    state_.shutter_tracking.velocity()->Add(
-        TwistOf(state_.cur_from_prev, state_.interval), frame.timestamp,
-        frame.color_shutter.offset);
-  }
-  if (const auto measured = inertial_->TwistDuring(frame);
-      state_.has_shutter && measured.has_value()) {
-    state_.twist = measured->twist;
-  }
+  if (state_.has_shutter && state_.interval > 0.0) GoOnWithVelocity(frame);
   result->status = TrackingStatus::kDegraded;
   result->reason = "no image: inertial sensor only";
   result->source = TrackingSource::kInertial;
@@ -126,6 +117,23 @@ bool Odometry::GoOnBlindly(const Frame& frame, TrackedFrame* result) {
   result->edges = {
       {result->reference, result->index, cur_from_ref, state_.covariance}};
   return true;
+}
+
+// The next frame with an image starts with this velocity, and so does this one
+// if it becomes a reference.
+void Odometry::GoOnWithVelocity(const Frame& frame) {
+  VelocityPrior prior = state_.shutter_tracking.velocity()->Prior(
+      std::nullopt, state_.interval, frame.color_shutter.offset);
+  prior.measured = inertial_->TwistDuring(frame);
+  const Twist mean = TwistOf(state_.cur_from_prev, state_.interval);
+  TrackingResult expected(tracker_->images().camera);
+  expected.velocity = ExpectedTwist(frame.Timing(prior.Fused(mean)), prior);
+  expected.estimate.cur_from_prev = state_.cur_from_ref;
+  expected.estimate.covariance =
+      state_.covariance + expected.velocity->motion_covariance;
+  state_.shutter_tracking.Restart(frame, expected);
+  state_.twist = expected.velocity->twist;
+  state_.twist_covariance = expected.velocity->motion_covariance;
 }
 
 void Odometry::HandleLost(const PreparedFrame& frame,

@@ -118,10 +118,7 @@ void ShutterTracking::Accept(const TrackingResult& refined) {
   early_.reset();
   acceleration_covariance_.setZero();
   if (found_.frame.has_value() && found_.frame->twist.has_value()) {
-    velocity_.Add(*found_.frame->twist, found_.frame->timestamp,
-                  found_.frame->color_shutter.offset);
-    acceleration_covariance_ = MotionCovarianceOfAcceleration(
-        found_.frame->Timing(), velocity_.change());
+    AddVelocity(*found_.frame, *found_.frame->twist);
   }
   between_ = found_.between;
   interval_ = found_.interval;
@@ -134,11 +131,16 @@ void ShutterTracking::Restart(const Frame& frame,
                               const TrackingResult& tracked) {
   HandleLost();
   if (!tracked.velocity.has_value()) return;
-  velocity_.Add(tracked.velocity->twist, frame.timestamp,
-                frame.color_shutter.offset);
+  AddVelocity(frame, tracked.velocity->twist);
   found_velocity_ = tracked.velocity;
   motion_covariance_ =
       CovarianceInCurrentAxes(tracked.estimate, &*found_velocity_);
+}
+
+void ShutterTracking::AddVelocity(const Frame& frame, const Twist& twist) {
+  velocity_.Add(twist, frame.timestamp, frame.color_shutter.offset);
+  acceleration_covariance_ =
+      MotionCovarianceOfAcceleration(frame.Timing(twist), velocity_.change());
 }
 
 VelocityPrior ShutterTracking::PriorOf(

@@ -100,6 +100,7 @@ class ShutterTracking {
     double interval = 0.0;         // over this interval, s
   };
 
+  void AddVelocity(const Frame& frame, const Twist& twist);
   VelocityPrior PriorOf(const OdometryKeyframe& reference,
                         const std::optional<Rigid3d>& prev_from_ref,
                         const std::optional<MeasuredTwist>& measured,

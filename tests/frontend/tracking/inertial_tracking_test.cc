@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,14 +13,14 @@
 namespace rgbd_pose {
 namespace {
 
-// A hand with a rolling shutter and an inertial sensor, which sees nothing for
-// half a second.
+// A hand that sees nothing for half a second.
 constexpr int kFrames = 80;
 constexpr int kBlindFrom = 50, kBlindTo = 65;
 
+// A rolling shutter and an inertial sensor.
 struct HandWithImu {
-  HandWithImu()
-      : sequence("handheld", RollingShutters(1.0), kFrames),
+  HandWithImu(const std::string& path, int frames)
+      : sequence(path, RollingShutters(1.0), frames),
         samples(sequence.dataset.SimulateImu(Options())) {
     sensor.calibration.cam_from_imu = Options().cam_from_imu;
   }
@@ -33,7 +34,7 @@ struct HandWithImu {
   }
 
   static const HandWithImu& Get() {
-    static const HandWithImu hand;
+    static const HandWithImu hand("handheld", kFrames);
     return hand;
   }
 
@@ -107,6 +108,35 @@ TEST(InertialTrackingTest, GoesOnWhereImagesShowNothing) {
     EXPECT_EQ(run.frames[i].segment, 0) << i;
     EXPECT_LT(ShiftError(run, kBlindFrom - 1, i), 0.015) << i;
   }
+}
+
+// Half a turn at 600 degrees/s, from 1.3 to 1.7 s, too fast for the images.
+// Nothing of what the camera saw before is in view afterwards.
+TEST(InertialTrackingTest, GoesOnFromTheNewViewAfterAQuickTurn) {
+  constexpr int kTurnFrom = 40, kTurnTo = 51, kLast = 79;
+  const HandWithImu hand("whip_pan_fast", kLast + 1);
+  Odometry odometry = OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
+  odometry.UseImu(hand.sensor);
+  odometry.AddImu(hand.samples);
+  TrackedFrame last;
+  MotionMatrix turned;  // covariance of the last pose by the sensor alone
+  int num_inertial = 0;
+  for (int i = 0; i <= kLast; ++i) {
+    const Frame& frame = hand.sequence.frames[i];
+    const bool is_turning = i >= kTurnFrom && i < kTurnTo;
+    last = odometry.Track(is_turning ? Covered(frame) : frame);
+    if (last.source != TrackingSource::kInertial) continue;
+    ++num_inertial;
+    turned = last.edges.at(0).covariance;
+  }
+  EXPECT_GE(num_inertial, kTurnTo - kTurnFrom);
+  EXPECT_LE(num_inertial, kTurnTo - kTurnFrom + 3);
+  EXPECT_EQ(last.status, TrackingStatus::kOk) << last.reason;
+  EXPECT_EQ(last.segment, 0);
+  const Rigid3d off = last.world_from_cam * hand.sequence.Motion(0, kLast);
+  EXPECT_LT(off.translation.norm(), 0.03);
+  EXPECT_LT(off.Angle(), 0.05);
+  EXPECT_LT(off.Angle(), 4.0 * std::sqrt(turned.topLeftCorner<3, 3>().trace()));
 }
 
 TEST(InertialTrackingTest, WithoutASensorTheCameraIsLostThere) {

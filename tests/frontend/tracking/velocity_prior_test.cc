@@ -131,7 +131,7 @@ TEST(VelocityPriorTest, AccelerationsMoveWhatRowsSee) {
   FrameTiming timing;
   timing.color.readout = timing.depth.readout = kReadout;
   const Twist change = {{30.0, -40.0, 0.0}, {0.0, 3.0, 4.0}};
-  const auto sigmas = [&] {
+  const auto sigmas = [&]() -> Eigen::Vector2d {
     const MotionMatrix covariance =
         MotionCovarianceOfAcceleration(timing, change);
     return Eigen::Vector2d(covariance(1, 1), covariance(4, 4)).cwiseSqrt();
