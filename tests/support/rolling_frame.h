@@ -1,17 +1,19 @@
 #pragma once
 
+#include <string>
+
 #include "frontend/frame/frame.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 
-// Frames of a small camera in the hand, rendered without noise, with any
-// shutter and with the velocity that the path has.
+// Frames of a small camera, rendered without noise, with any shutter and with
+// the velocity that the path has: by default in the hand.
 
 namespace rgbd_pose {
 
-inline SyntheticOptions HandheldOptions() {
+inline SyntheticOptions HandheldOptions(const std::string& path = "handheld") {
   SyntheticOptions options;
-  options.path = "handheld";
+  options.path = path;
   options.frames = 60;
   options.noise = false;
   options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
@@ -19,9 +21,8 @@ inline SyntheticOptions HandheldOptions() {
 }
 
 // The path's velocity at the time stamp of a frame, and how it changes.
-inline Twist TwistOfPath(int index) {
+inline Twist TwistOfPath(int index, const SyntheticOptions& options) {
   constexpr double kStep = 1e-3;  // s
-  const SyntheticOptions options = HandheldOptions();
   const SyntheticPath path = FindSyntheticPath(options.path);
   const double t = index / options.rate_hz;
   const double duration = (options.frames - 1) / options.rate_hz;
@@ -38,12 +39,13 @@ inline Twist TwistOfPath(int index) {
 
 // A frame with its velocity.
 inline Frame HandheldFrame(int index, const Shutter& color,
-                           const Shutter& depth) {
-  SyntheticOptions options = HandheldOptions();
+                           const Shutter& depth,
+                           const std::string& path = "handheld") {
+  SyntheticOptions options = HandheldOptions(path);
   options.color_shutter = color;
   options.depth_shutter = depth;
   Frame frame = SyntheticDataset(options).Read(index);
-  frame.twist = TwistOfPath(index);
+  frame.twist = TwistOfPath(index, options);
   return frame;
 }
 

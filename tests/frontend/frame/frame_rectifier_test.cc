@@ -91,6 +91,25 @@ TEST(FrameRectifierTest, MakesWhatIsSeenFromAPlaceNearby) {
   ExpectLike(rectified, expected, rolling);
 }
 
+// A turn that reaches 300 degrees/s within a tenth of a second: this frame is
+// taken in the middle of that.
+TEST(FrameRectifierTest, KnowsHowATurnStarts) {
+  constexpr int kStart = 36;
+  const char* const kPath = "whip_pan";
+  const Frame expected = HandheldFrame(kStart, {}, {}, kPath);
+  FrameRectifier rectifier(HandheldOptions().camera.camera);
+  for (const double sign : {1.0, -1.0}) {
+    const Frame rolling = HandheldFrame(kStart, {-0.0075, sign * 0.028},
+                                        {-0.018, sign * 0.028}, kPath);
+    const Frame rectified = rectifier.Rectify(rolling);
+    ExpectLike(rectified, expected, rolling);
+    // At the mean velocity of the frame, 8 to 15 and 0.02.
+    EXPECT_LT(Quantile(GrayDifferences(rectified.gray, expected.gray), 0.9),
+              6.0);
+    EXPECT_LT(Quantile(DepthDifferences(rectified, expected), 0.9), 0.002);
+  }
+}
+
 TEST(FrameRectifierTest, SharesWhatNeedsNothing) {
   FrameRectifier rectifier(HandheldOptions().camera.camera);
   Frame unknown = Seen({-0.0075, 0.028}, {-0.018, 0.028});
