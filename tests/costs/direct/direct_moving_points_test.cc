@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/util/quantile.h"
@@ -72,10 +73,13 @@ Off OffFrom(const DirectFrame& expected, int level, bool has_gray,
 // A rolling frame, the same without its velocity, and what is seen `later` (s)
 // than the time stamp, from where points refer to.
 struct Views {
-  explicit Views(double later)
+  explicit Views(double later, int index = kIndex,
+                 const std::string& path = "handheld")
       : camera(HandheldOptions().camera.camera),
-        moving(RollingFrame(kIndex), camera),
-        expected(HandheldFrame(kIndex, {later, 0.0}, {later, 0.0}), camera),
+        moving(HandheldFrame(index, {-0.0075, 0.028}, {-0.018, 0.028}, path),
+               camera),
+        expected(HandheldFrame(index, {later, 0.0}, {later, 0.0}, path),
+                 camera),
         unmoved(moving) {
     expected.frame.twist.reset();
     expected.Build();
@@ -135,6 +139,25 @@ std::vector<double> OffFromPlanes(const Camera& camera,
     }
   }
   return off;
+}
+
+// Those of a turn that reaches 300 degrees/s within a tenth of a second, in the
+// middle of that. The limits are half of what they err at its mean velocity.
+TEST(MovingPointsTest, KnowHowATurnStarts) {
+  const Views views(0.0, 36, "whip_pan");
+  const Off textured = OffFrom(views.expected, 0, /*has_gray=*/true,
+                               PointsOf(&TexturedPoints, views.moving.view, 0));
+  EXPECT_LT(Median(textured.depth), 0.0015);
+  EXPECT_LT(Quantile(textured.depth, 0.9), 0.01);
+  EXPECT_LT(Median(textured.gray), 2.0);
+  EXPECT_LT(Quantile(textured.gray, 0.9), 15.0);
+  const Off smooth = OffFrom(views.expected, 0, /*has_gray=*/false,
+                             PointsOf(&SmoothPoints, views.moving.view, 0));
+  EXPECT_LT(Median(smooth.depth), 0.0014);
+  EXPECT_LT(Quantile(smooth.depth, 0.9), 0.008);
+  const PackedColumns planes = PointsOf(&SmoothPoints, views.expected.view, 0);
+  EXPECT_LT(Median(OffFromPlanes(views.camera, planes, views.moving.view)),
+            0.01);
 }
 
 TEST(MovingPointsTest, PlanesAreThoseOfAGlobalShutter) {
