@@ -56,8 +56,8 @@ class Open3dHybrid final : public FrameTracker {
 
 }  // namespace
 
-std::unique_ptr<FrameTracker> MakeOpen3dHybrid(const Camera& camera) {
-  return std::make_unique<Open3dHybrid>(camera);
+std::unique_ptr<FrameTracker> MakeOpen3dHybrid(const RgbdCamera& camera) {
+  return std::make_unique<Open3dHybrid>(camera.camera);
 }
 
 }  // namespace rgbd_pose

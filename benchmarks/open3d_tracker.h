@@ -8,6 +8,6 @@ namespace rgbd_pose {
 
 // Open3D's ComputeRGBDOdometry with its hybrid term (Park, Zhou & Koltun, ICCV
 // 2017) and default settings, from frame to frame; the guess is no motion.
-std::unique_ptr<FrameTracker> MakeOpen3dHybrid(const Camera& camera);
+std::unique_ptr<FrameTracker> MakeOpen3dHybrid(const RgbdCamera& camera);
 
 }  // namespace rgbd_pose
