@@ -70,7 +70,6 @@ Sequence LoadRoom() {
 }
 
 Sequence LoadFolder() {
-  RequireFlag("camera", FLAGS_camera);
   SourceOptions options;
   options.path = FLAGS_dataset;
   options.camera = ResolveCamera(FLAGS_camera);
@@ -141,6 +140,7 @@ int Main() {
   RequireFlag("output", FLAGS_output);
   if (FLAGS_frames < 2) throw InputError("--frames must be at least 2");
   if (FLAGS_rounds < 1) throw InputError("--rounds must be at least 1");
+  if (!FLAGS_dataset.empty()) RequireFlag("camera", FLAGS_camera);
   cv::setNumThreads(1);
   double load[3] = {};
   getloadavg(load, 3);
