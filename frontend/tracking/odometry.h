@@ -244,7 +244,9 @@ class Odometry {
     bool aligns_depth = true;    // see TrackingGuess
     std::optional<Twist> twist;  // see last_twist
     MotionMatrix twist_covariance = MotionMatrix::Zero();   // TrackingResult
-    MotionMatrix timing_covariance = MotionMatrix::Zero();  // of capture time
+    // Of capture time, and of accelerations while rows are exposed. Where it is
+    // large, depth is not aligned in the next frame.
+    MotionMatrix timing_covariance = MotionMatrix::Zero();
 
     // Its motion.
     OdometryKeyframe* reference = nullptr;  // null: none yet
