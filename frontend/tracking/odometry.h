@@ -243,7 +243,7 @@ class Odometry {
     bool has_shutter = false;    // see HasShutter
     bool aligns_depth = true;    // see TrackingGuess
     std::optional<Twist> twist;  // see last_twist
-    MotionMatrix twist_covariance = MotionMatrix::Zero();   // TrackingResult
+    MotionMatrix twist_covariance = MotionMatrix::Zero();  // TrackingResult
     // Of capture time, and of accelerations while rows are exposed. Where it is
     // large, depth is not aligned in the next frame.
     MotionMatrix timing_covariance = MotionMatrix::Zero();
