@@ -58,4 +58,8 @@ double SparseInverse::operator()(int row, int col) const {
   return below_.coeff(i, j);
 }
 
+Eigen::VectorXd SparseInverse::Column(int col) const {
+  return ldlt_.solve(Eigen::VectorXd::Unit(ldlt_.rows(), col));
+}
+
 }  // namespace rgbd_pose

@@ -25,6 +25,9 @@ class SparseInverse {
   // An entry of the inverse, at a row and column where the matrix has one.
   double operator()(int row, int col) const;
 
+  // A column of the inverse with all its entries, each time by one solve.
+  Eigen::VectorXd Column(int col) const;
+
  private:
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt_;
   bool is_valid_ = false;

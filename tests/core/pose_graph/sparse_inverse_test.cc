@@ -27,6 +27,7 @@ TEST(SparseInverseTest, IsTheInverseWhereTheMatrixHasEntries) {
   ASSERT_TRUE(inverse.is_valid());
   int entries = 0;
   for (int i = 0; i < 50; ++i) {
+    EXPECT_LT((inverse.Column(i) - whole.col(i)).norm(), 1e-12 * whole.norm());
     for (int k = 0; k < 50; ++k) {
       if (matrix(i, k) == 0.0) continue;
       ++entries;
