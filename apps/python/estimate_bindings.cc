@@ -1,6 +1,5 @@
 #include <pybind11/pybind11.h>
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
+#include "apps/python/matches.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
@@ -158,70 +158,12 @@ std::vector<Setting> EstimateTable(OdometrySettings* settings) {
   return rows;
 }
 
-void CheckSizes(const NumberArray& prev, const std::string& prev_name,
-                const NumberArray& other, const std::string& other_name) {
-  if (prev.size() == other.size()) return;
-  throw InputError(prev_name + " has " + std::to_string(prev.size()) +
-                   " rows and " + other_name + " " +
-                   std::to_string(other.size()) +
-                   "; row i of both must belong to match i");
-}
-
-Eigen::Vector3d Row(const NumberArray& array, size_t i) {
-  return {array(i, 0), array(i, 1), array(i, 2)};
-}
-
 // Moves the values of matches to their input rows; zero elsewhere.
 template <typename From, typename To = From>
 std::vector<To> AtRows(const std::vector<From>& values,
                        const std::vector<size_t>& rows, size_t size) {
   std::vector<To> result(size);
   for (size_t i = 0; i < rows.size(); ++i) result[rows[i]] = values[i];
-  return result;
-}
-
-// Makes an observation from x, y, z in camera axes (m). z = 0 gives non-finite
-// values and no match.
-Observation ObservePoint(const Camera& camera, const Eigen::Vector3d& point) {
-  return {camera.fx * point.x() / point.z() + camera.cx,
-          camera.fy * point.y() / point.z() + camera.cy, point.z()};
-}
-
-// Makes an observation from an image pixel u, v (px) and a depth (m), 0 if
-// missing.
-Observation ObservePixel(const Camera& camera, const Eigen::Vector3d& pixel) {
-  const Eigen::Vector2d ideal = camera.Undistort(pixel.head<2>());
-  return {ideal.x(), ideal.y(), pixel.z()};
-}
-
-// A function that makes an observation from a row of three numbers.
-using ToObservation = decltype(&ObservePoint);
-
-// Matches and their row numbers in the given arrays.
-struct RowMatches {
-  Correspondences matches;
-  std::vector<size_t> rows;
-};
-
-// Makes matches from the valid rows.
-RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
-                       const NumberArray& prev, const NumberArray& cur,
-                       const std::optional<NumberArray>& normals_cur,
-                       double sigma_px, const DepthNoiseModel& depth_noise) {
-  RowMatches result;
-  result.matches = Correspondences(camera);
-  result.rows.reserve(prev.size());
-  const auto observe = [&](const NumberArray& array, size_t i) {
-    Observation o = to_observation(camera, Row(array, i));
-    o.sigma_px = sigma_px;
-    if (o.depth > 0.0) o.sigma_depth = depth_noise.sigma(o.depth);
-    return o;
-  };
-  for (size_t i = 0; i < prev.size(); ++i) {
-    Observation seen = observe(cur, i);
-    if (normals_cur.has_value()) seen.normal = Row(*normals_cur, i);
-    if (result.matches.Add(observe(prev, i), seen)) result.rows.push_back(i);
-  }
   return result;
 }
 
@@ -243,25 +185,14 @@ void BindFunction(py::module_* module, const char* name,
                   ToObservation to_observation, const char* prev_name,
                   const char* cur_name, const CameraArgument& camera_argument,
                   const char* doc) {
-  const auto estimate = [=](const py::object& prev_object,
-                            const py::object& cur_object,
+  const auto estimate = [=](const py::object& prev, const py::object& cur,
                             const RgbdCamera* camera,
                             const py::object& initial_guess, double sigma_px,
-                            const py::object& normals_object,
+                            const py::object& normals_cur,
                             const py::object& prior_object, int threads,
                             const py::kwargs& keywords) {
-    const NumberArray prev(prev_object, prev_name, {NumberArray::kAny, 3});
-    const NumberArray cur(cur_object, cur_name, {NumberArray::kAny, 3});
-    CheckSizes(prev, prev_name, cur, cur_name);
-    std::optional<NumberArray> normals;
-    if (!normals_object.is_none()) {
-      normals.emplace(normals_object, "normals_cur",
-                      std::vector<py::ssize_t>{NumberArray::kAny, 3});
-      CheckSizes(prev, prev_name, *normals, "normals_cur");
-    }
-    if (!std::isfinite(sigma_px) || sigma_px <= 0.0) {
-      throw InputError("sigma_px must be a positive number of pixels");
-    }
+    const MatchArrays arrays(prev, prev_name, cur, cur_name, normals_cur,
+                             sigma_px);
     Rigid3d start;
     const InitialGuess* guess = nullptr;
     if (py::isinstance<py::str>(initial_guess)) {
@@ -282,13 +213,12 @@ void BindFunction(py::module_* module, const char* name,
     const RgbdCamera seen_by = camera == nullptr ? RgbdCamera() : *camera;
 
     const ReleasedGil no_gil;
-    const RowMatches matches =
-        MakeMatches(seen_by.camera, to_observation, prev, cur, normals,
-                    sigma_px, NoiseFor(settings, seen_by));
+    const RowMatches matches = arrays.Make(seen_by.camera, to_observation,
+                                           NoiseFor(settings, seen_by));
     if (guess != nullptr) start = guess->find(matches.matches).value_or(start);
     return MakeResult(estimator.Estimate(matches.matches, start,
                                          prior.has_value() ? &*prior : nullptr),
-                      matches, prev.size());
+                      matches, arrays.size());
   };
   OdometrySettings settings;
   DefineWithSettings(module, name, estimate, EstimateTable(&settings), doc,
