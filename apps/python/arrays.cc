@@ -28,15 +28,18 @@ Rigid3d PoseFromRow(const NumberArray& row, size_t i,
   return Rigid3d(rotation, translation);
 }
 
+bool IsRotation(const Eigen::Matrix3d& R) {
+  const Eigen::Matrix3d error = R * R.transpose() - Eigen::Matrix3d::Identity();
+  return R.allFinite() && error.cwiseAbs().maxCoeff() <= kMaxRotationError &&
+         R.determinant() > 0.0;
+}
+
 // `element` gives the numbers of a matrix by row and column.
 template <typename Element>
 Rigid3d PoseFromMatrix(const Element& element, const std::string& where) {
   const Eigen::Matrix4d matrix = Eigen::Matrix4d::NullaryExpr(element);
   const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d error = R * R.transpose() - Eigen::Matrix3d::Identity();
-  const bool is_rigid = matrix.allFinite() &&
-                        error.cwiseAbs().maxCoeff() <= kMaxRotationError &&
-                        R.determinant() > 0.0 &&
+  const bool is_rigid = matrix.allFinite() && IsRotation(R) &&
                         matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
   if (!is_rigid) {
     throw InputError(where +
@@ -127,6 +130,15 @@ py::array ToArray(const py::object& object, const std::string& name) {
 Rigid3d RigidFromArray(const py::object& object, const std::string& name) {
   const NumberArray numbers(object, name, {4, 4});
   return PoseFromMatrix([&](int i, int j) { return numbers(i, j); }, name);
+}
+
+Eigen::Quaterniond RotationFromArray(const py::object& object,
+                                     const std::string& name) {
+  const NumberArray numbers(object, name, {3, 3});
+  const Eigen::Matrix3d R =
+      Eigen::Matrix3d::NullaryExpr([&](int i, int j) { return numbers(i, j); });
+  if (!IsRotation(R)) throw InputError(name + ": is not a rotation matrix");
+  return Eigen::Quaterniond(R).normalized();
 }
 
 py::array ReadOnly(py::array array) {

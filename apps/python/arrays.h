@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstring>
 #include <string>
@@ -57,6 +58,10 @@ pybind11::array ToArray(const pybind11::object& object,
 
 // The rigid motion of a 4 x 4 array. Throws InputError if it is invalid.
 Rigid3d RigidFromArray(const pybind11::object& object, const std::string& name);
+
+// The rotation of a 3 x 3 array. Throws InputError if it is none.
+Eigen::Quaterniond RotationFromArray(const pybind11::object& object,
+                                     const std::string& name);
 
 // A matrix that is stored row by row, as arrays are.
 using RowMajorMatrix =

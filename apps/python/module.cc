@@ -27,6 +27,8 @@ PYBIND11_MODULE(_rgbd_pose, m) {
         "Names of the presets for Camera.load.");
   BindCamera(&m);
   BindEstimate(&m);
+  BindFactors(&m);
+  BindProblem(&m);
   BindRecording(&m);
   BindOdometry(&m);
   BindSlam(&m);

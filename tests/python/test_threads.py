@@ -71,6 +71,20 @@ def test_reading_and_tracking_release_it(counter, sequence, camera):
     assert advances(counter, lambda: slam.track(frame.gray, frame.depth))
 
 
+def test_problems_release_it(counter):
+    prev = random_points(50000)
+    cur = move(motion(), prev)
+    assert advances(counter, lambda: rgbd_pose.PairFactor(prev, cur))
+    poses = np.tile(rgbd_pose.pose_block(np.eye(4)), (2, 1))
+    problem = rgbd_pose.Problem()
+    problem.add_residual_block(
+        rgbd_pose.PairFactor(prev, cur), None, list(poses)
+    )
+    problem.set_parameter_block_constant(poses[0])
+    assert advances(counter, lambda: rgbd_pose.solve(problem, max_iterations=2))
+    assert advances(counter, lambda: problem.covariance(list(poses)))
+
+
 def test_many_threads_get_the_same(counter):
     prev = random_points(5000)
     cur = move(motion(), prev)

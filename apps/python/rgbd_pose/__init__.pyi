@@ -171,6 +171,160 @@ def estimate_motion_pixels(
     assembly: str = "compressed",
 ) -> MotionEstimate: ...
 
+_Block = NDArray[np.float64]  # contiguous and writeable
+
+class Factor:
+    def evaluate(
+        self, blocks: Sequence[ArrayLike]
+    ) -> Tuple[_Floats, List[_Floats]]: ...
+
+class AbsolutePoseFactor(Factor):
+    def __init__(
+        self,
+        world_from_body: ArrayLike,
+        covariance: ArrayLike,
+    ) -> None: ...
+
+class AbsolutePositionFactor(Factor):
+    def __init__(
+        self,
+        in_world: ArrayLike,
+        covariance: ArrayLike,
+        in_body: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None: ...
+
+class RelativePoseFactor(Factor):
+    def __init__(
+        self,
+        cur_from_ref: ArrayLike,
+        covariance: ArrayLike,
+    ) -> None: ...
+
+class RelativeRotationFactor(Factor):
+    def __init__(
+        self,
+        cur_from_ref: ArrayLike,
+        covariance: ArrayLike,
+    ) -> None: ...
+
+class GravityFactor(Factor):
+    def __init__(
+        self,
+        in_body: ArrayLike,
+        in_world: ArrayLike,
+        sigma: float = 0.01,
+    ) -> None: ...
+
+class CommonDirectionFactor(Factor):
+    def __init__(
+        self,
+        in_a: ArrayLike,
+        in_b: ArrayLike,
+        sigma: float = 0.01,
+    ) -> None: ...
+
+class ConstantVelocityFactor(Factor):
+    def __init__(
+        self,
+        seconds: float,
+        angular_density: float = 1.0,
+        linear_density: float = 1.0,
+    ) -> None: ...
+
+class DistanceFactor(Factor):
+    def __init__(
+        self,
+        metres: float,
+        sigma: float = 0.01,
+        in_a: ArrayLike = (0.0, 0.0, 0.0),
+        in_b: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None: ...
+
+class MapPlaneFactor(Factor):
+    def __init__(
+        self,
+        in_body: ArrayLike,
+        normal: ArrayLike,
+        distance: float,
+        sigma: float = 0.01,
+    ) -> None: ...
+
+class LandmarkFactor(Factor):
+    def __init__(
+        self,
+        camera: Camera,
+        ray: ArrayLike,
+        pixel: ArrayLike,
+        sigma_px: float = 1.0,
+    ) -> None: ...
+
+class PairFactor(Factor):
+    def __init__(
+        self,
+        points_ref: ArrayLike,
+        points_cur: ArrayLike,
+        camera: Optional[Camera] = None,
+        *,
+        initial_guess: Optional[ArrayLike] = None,
+        cost: str = "bidirectional_point",
+        loss: str = "cauchy",
+        sigma_px: float = 0.5,
+        normals_cur: Optional[ArrayLike] = None,
+        depth_noise: str = "camera",
+        mounting: str = "constant",
+        body_from_ref_cam: Optional[ArrayLike] = None,
+        body_from_cur_cam: Optional[ArrayLike] = None,
+    ) -> None: ...
+    @staticmethod
+    def from_pixels(
+        pixels_ref: ArrayLike,
+        pixels_cur: ArrayLike,
+        camera: Camera,
+        *,
+        initial_guess: Optional[ArrayLike] = None,
+        cost: str = "bidirectional_point",
+        loss: str = "cauchy",
+        sigma_px: float = 0.5,
+        normals_cur: Optional[ArrayLike] = None,
+        depth_noise: str = "camera",
+        mounting: str = "constant",
+        body_from_ref_cam: Optional[ArrayLike] = None,
+        body_from_cur_cam: Optional[ArrayLike] = None,
+    ) -> PairFactor: ...
+    def associate(self, cur_from_ref: ArrayLike) -> None: ...
+
+class SolverSummary:
+    @property
+    def status(self) -> Literal["ok", "not_converged", "failed"]: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def ok(self) -> bool: ...
+    @property
+    def initial_cost(self) -> float: ...
+    @property
+    def final_cost(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def solve_ms(self) -> float: ...
+
+class Problem:
+    def __init__(self) -> None: ...
+    def add_residual_block(
+        self,
+        factor: Factor,
+        loss: Optional[str],
+        blocks: Sequence[_Block],
+    ) -> None: ...
+    def set_parameter_block_constant(self, block: _Block) -> None: ...
+    def set_parameter_block_variable(self, block: _Block) -> None: ...
+    def covariance(self, blocks: Sequence[_Block]) -> _Floats: ...  # (N, N)
+
+def solve(problem: Problem, *, max_iterations: int = 100) -> SolverSummary: ...
+def pose_block(world_from_body: ArrayLike) -> _Block: ...  # (7,), m
+def pose_matrix(pose: ArrayLike) -> _Floats: ...  # (4, 4), m
+
 class RelativePose:
     @property
     def ref(self) -> int: ...
