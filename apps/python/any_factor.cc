@@ -14,9 +14,10 @@ std::string BlockNames(const AnyFactor& factor) {
 
 void CheckBlockCount(const AnyFactor& factor, const std::string& where,
                      size_t count) {
-  if (count == factor.blocks.size()) return;
-  throw InputError(where + ": the factor is over " +
-                   std::to_string(factor.blocks.size()) + " blocks (" +
+  const size_t needed = factor.blocks.size();
+  if (count == needed) return;
+  throw InputError(where + ": the factor is over " + std::to_string(needed) +
+                   (needed == 1 ? " block (" : " blocks (") +
                    BlockNames(factor) + "), not " + std::to_string(count));
 }
 

@@ -55,7 +55,8 @@ class EndCallback final : public ceres::IterationCallback {
   ceres::CallbackReturnType operator()(
       const ceres::IterationSummary& summary) override {
     constexpr int kMaxInvalid = 5;  // Ceres' default
-    invalid_ = summary.step_is_valid ? 0 : invalid_ + 1;
+    const bool is_start = summary.iteration == 0;
+    invalid_ = is_start || summary.step_is_valid ? 0 : invalid_ + 1;
     return is_interrupted_() || invalid_ > kMaxInvalid ? ceres::SOLVER_ABORT
                                                        : ceres::SOLVER_CONTINUE;
   }
@@ -134,8 +135,8 @@ FactorSolverSummary SolveFactors(const FactorSolverOptions& options,
                         : "the solver failed: " + summary.message;
   } else if (summary.termination_type != ceres::CONVERGENCE) {
     result.status = FactorSolverStatus::kNotConverged;
-    result.reason = "the cost still fell after " +
-                    std::to_string(result.iterations) + " iterations";
+    result.reason = "the cost still fell in iteration " +
+                    std::to_string(result.iterations) + ", the last one";
   }
   return result;
 }

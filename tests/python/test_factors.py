@@ -134,6 +134,24 @@ def test_a_loss_decides_about_a_wrong_edge():
             > np.trace(plain.problem.covariance([plain.poses[4]])))
 
 
+@pytest.mark.parametrize("factor, width", [
+    (rgbd_pose.DistanceFactor(10.0, 0.1), 1.3450),
+    (rgbd_pose.CommonDirectionFactor(DOWN, -DOWN, 0.01), 1.5011),
+    (rgbd_pose.RelativeRotationFactor(
+        rotation(DOWN, 1.0), 1e-4 * np.eye(3)), 1.6280),
+    (rgbd_pose.RelativePoseFactor(
+        rigid(DOWN, 1.0, DOWN), MOTION_COVARIANCE), 1.8693),
+])
+def test_the_width_of_a_loss_is_that_of_the_independent_rows(factor, width):
+    blocks = [block_row(np.eye(4)), block_row(np.eye(4))]
+    norm = np.linalg.norm(factor.evaluate(blocks)[0])
+    assert norm > 10.0
+    problem = rgbd_pose.Problem()
+    problem.add_residual_block(factor, "huber", blocks)
+    cost = rgbd_pose.solve(problem, max_iterations=1).initial_cost
+    np.testing.assert_allclose(cost, width * norm - 0.5 * width**2, rtol=1e-9)
+
+
 @pytest.mark.parametrize("cost", ["bidirectional_point", "point_to_point"])
 @pytest.mark.parametrize("loss", ["none", "huber", "tukey"])
 def test_a_pair_moves_as_estimate_motion_does(cost, loss):
@@ -389,7 +407,7 @@ def test_statuses_of_a_solve():
     loop = Loop()
     summary = rgbd_pose.solve(loop.problem, max_iterations=1)
     assert summary.status == "not_converged" and not summary.ok
-    assert summary.reason == "the cost still fell after 1 iterations"
+    assert summary.reason == "the cost still fell in iteration 1, the last one"
     # A landmark behind the view has no residual.
     factor, blocks = (make() for make in EXACT["LandmarkFactor"])
     blocks[1][:] = block_row(rigid([0, 1, 0], 0.0, [0, 0, 100]))
@@ -415,7 +433,8 @@ def test_nothing_is_printed(capfd):
     far.poses[1, 4:] = 1e200  # its squared residual is infinite
     rgbd_pose.solve(loop.problem)
     rgbd_pose.solve(loop.problem, max_iterations=1)
-    rgbd_pose.solve(far.problem)
+    rgbd_pose.solve(free.problem)
+    assert rgbd_pose.solve(far.problem).status == "failed"
     lone = rgbd_pose.Problem()
     lone.add_residual_block(
         rgbd_pose.GravityFactor(DOWN, DOWN), None, [block_row(np.eye(4))]
@@ -514,6 +533,8 @@ def test_wrong_arguments_are_refused():
         r"blocks: the factor is over 2 blocks \(pose, pose\), not 1"
     ):
         add(FACTOR, None, two[:1])
+    with raises_one_line(r"blocks: the factor is over 1 block \(pose\), not 7"):
+        add(rgbd_pose.GravityFactor(DOWN, DOWN), None, poses[0])
     with raises_one_line(r"blocks\[1\]: is blocks\[0\] again; .*"):
         add(FACTOR, None, [poses[0], poses[0]])
     with raises_one_line(r"blocks\[1\]: overlaps another block .*"):
