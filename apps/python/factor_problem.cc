@@ -7,6 +7,7 @@
 
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "core/factors/pose_manifold.h"
@@ -105,7 +106,18 @@ const char* ToString(FactorSolverStatus status) {
 
 FactorSolverSummary SolveFactors(const FactorSolverOptions& options,
                                  FactorProblem* problem) {
+  FactorSolverSummary result;
   const auto ceres_problem = MakeCeresProblem(problem);
+  // Otherwise Ceres writes to stderr.
+  std::vector<double> gradient;
+  if (!ceres_problem->Evaluate({}, &result.initial_cost, nullptr, &gradient,
+                               nullptr)) {
+    result.status = FactorSolverStatus::kFailed;
+    result.reason = "a factor cannot be evaluated at the start";
+    result.initial_cost = result.final_cost =
+        std::numeric_limits<double>::quiet_NaN();
+    return result;
+  }
   EndCallback end(options.is_interrupted);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -121,7 +133,6 @@ FactorSolverSummary SolveFactors(const FactorSolverOptions& options,
   ceres::Solver::Summary summary;
   ceres::Solve(solver, ceres_problem.get(), &summary);
 
-  FactorSolverSummary result;
   result.initial_cost = summary.initial_cost;
   result.final_cost = summary.final_cost;
   // The first of them is the start, if it could be evaluated.

@@ -43,8 +43,8 @@ struct FactorProblem {
 struct FactorSolverOptions {
   int max_iterations = 100;
 
-  // A solve ends where a step changes the cost, the parameters or the gradient
-  // (of whitened residuals) by less, relative to their size.
+  // A solve ends where a step changes the cost or the parameters by less than
+  // this share, or where the gradient, of whitened residuals, is below it.
   double tolerance = 1e-12;
 
   // Asked after each iteration; true ends the solve, whose steps are lost.
@@ -61,8 +61,9 @@ const char* ToString(FactorSolverStatus status);
 
 struct FactorSolverSummary {
   FactorSolverStatus status = FactorSolverStatus::kOk;
-  std::string reason;         // empty if ok
-  double initial_cost = 0.0;  // half the sum of squares, under the losses
+  std::string reason;  // empty if ok
+  // Half the sum of squares, under the losses; NaN if it cannot be evaluated.
+  double initial_cost = 0.0;
   double final_cost = 0.0;
   int iterations = 0;
   double solve_ms = 0.0;

@@ -87,7 +87,7 @@ void BindSummary(py::module_* module) {
       "whether the status is 'ok'");
   property("initial_cost", &Summary::initial_cost,
            "half the sum of the squared residuals, under their losses, at the "
-           "start");
+           "start;\nnan if a factor cannot be evaluated there");
   property("final_cost", &Summary::final_cost, "the same at the end");
   property("iterations", &Summary::iterations, "steps that were tried");
   property("solve_ms", &Summary::solve_ms, "solver time, ms");

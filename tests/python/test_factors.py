@@ -117,6 +117,26 @@ def test_a_loop_is_solved_and_has_a_covariance():
     assert some.shape == (12, 12) and not some[6:].any() and not some[:, 6:].any()
 
 
+def test_quaternions_of_any_length_stand_for_rotations():
+    loop, scaled = Loop(), Loop()
+    scaled.poses[:, :4] *= [[2.0], [0.5], [3.0], [-1.0], [0.1]]
+    for each in (loop, scaled):
+        each.covariance = each.problem.covariance(list(each.poses))
+        rgbd_pose.solve(each.problem)
+    np.testing.assert_allclose(scaled.covariance, loop.covariance, rtol=1e-9)
+    assert max(scaled.errors()) < 1e-9
+    np.testing.assert_allclose(
+        np.linalg.norm(scaled.poses[1:, :4], axis=1), 1.0, rtol=1e-12
+    )
+    pose = np.array([0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0])  # needs no step
+    problem = rgbd_pose.Problem()
+    problem.add_residual_block(
+        rgbd_pose.AbsolutePoseFactor(np.eye(4), np.eye(6)), None, [pose]
+    )
+    assert rgbd_pose.solve(problem).iterations == 0
+    np.testing.assert_array_equal(pose, block_row(np.eye(4)))
+
+
 def test_a_loss_decides_about_a_wrong_edge():
     # From farther away a redescending loss may leave out the right edges.
     begin = {"wrong_edge": (1, 4), "off": 0.005}
@@ -231,6 +251,22 @@ def test_a_mounting_is_a_constant_or_a_block():
         np.testing.assert_allclose(
             rgbd_pose.pose_matrix(mounting), body_from_cam, atol=1e-6
         )
+
+
+def test_cameras_of_a_pair_may_be_mounted_in_different_ways():
+    body_from_ref_cam = rigid([1.0, 0.2, 0.1], 0.3, [0.1, -0.2, 0.05])
+    body_from_cur_cam = rigid([0.0, 0.2, 1.0], 0.2, [-0.1, 0.1, 0.0])
+    bodies = [np.eye(4), rigid([0.0, 1.0, 0.0], 0.2, [0.1, 0.0, 0.2])]
+    cur_from_ref = (np.linalg.inv(bodies[1] @ body_from_cur_cam)
+                    @ bodies[0] @ body_from_ref_cam)
+    points = random_points(20)
+    pair = rgbd_pose.PairFactor(
+        points, move(cur_from_ref, points), CAMERA,
+        body_from_ref_cam=body_from_ref_cam,
+        body_from_cur_cam=body_from_cur_cam,
+    )
+    residuals, _ = pair.evaluate([block_row(body) for body in bodies])
+    np.testing.assert_allclose(residuals, 0.0, atol=1e-9)
 
 
 def test_pixels_and_points_give_the_same_pair():
@@ -415,7 +451,9 @@ def test_statuses_of_a_solve():
     problem = rgbd_pose.Problem()
     problem.add_residual_block(factor, None, blocks)
     summary = rgbd_pose.solve(problem)
-    assert summary.status == "failed" and "\n" not in summary.reason
+    assert summary.status == "failed"
+    assert summary.reason == "a factor cannot be evaluated at the start"
+    assert np.isnan(summary.initial_cost)
     for block, same in zip(blocks, before):
         np.testing.assert_array_equal(block, same)
     with pytest.raises(rgbd_pose.InputError, match="no residual"):
@@ -435,6 +473,12 @@ def test_nothing_is_printed(capfd):
     rgbd_pose.solve(loop.problem, max_iterations=1)
     rgbd_pose.solve(free.problem)
     assert rgbd_pose.solve(far.problem).status == "failed"
+    endless = rgbd_pose.Problem()  # its residual is infinite
+    endless.add_residual_block(
+        rgbd_pose.DistanceFactor(1e308, 1e-9), None,
+        [block_row(np.eye(4)), block_row(motion())],
+    )
+    assert rgbd_pose.solve(endless).status == "failed"
     lone = rgbd_pose.Problem()
     lone.add_residual_block(
         rgbd_pose.GravityFactor(DOWN, DOWN), None, [block_row(np.eye(4))]
