@@ -11,6 +11,7 @@
 #include <exception>
 
 #include "core/util/quantile.h"
+#include "costs/calibration/landmark_block.h"
 
 namespace rgbd_pose {
 namespace {

@@ -8,7 +8,6 @@
 #include "core/geometry/motion.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/calibration_views.h"
-#include "costs/calibration/landmark_block.h"
 
 namespace rgbd_pose {
 

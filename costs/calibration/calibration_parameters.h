@@ -99,4 +99,20 @@ inline double CalibrationFloor(int parameter, int keyframes) {
          std::sqrt(std::max(1.0, kMany / std::max(1, keyframes)));
 }
 
+// The solver's calibration parameters y, in standard deviations of the prior:
+// theta = start + width . y. Fixed parameters have width 0.
+struct CalibrationOrigin {
+  CalibrationVector start;
+  CalibrationVector width;
+
+  template <typename T>
+  Eigen::Matrix<T, kCalibrationSize, 1> At(const T* y) const {
+    Eigen::Matrix<T, kCalibrationSize, 1> theta;
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      theta[k] = start[k] + width[k] * y[k];
+    }
+    return theta;
+  }
+};
+
 }  // namespace rgbd_pose

@@ -6,7 +6,7 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "costs/calibration/calibration_parameters.h"
-#include "costs/calibration/landmark_residuals.h"
+#include "costs/calibration/landmark_data.h"
 
 namespace rgbd_pose {
 

@@ -14,22 +14,6 @@ namespace rgbd_pose {
 // Width of Cauchy's loss on landmarks, in standard deviations.
 inline constexpr double kLandmarkLossWidth = 2.5;
 
-// The solver's calibration parameters y, in standard deviations of the prior:
-// theta = start + width . y. Fixed parameters have width 0.
-struct CalibrationOrigin {
-  CalibrationVector start;
-  CalibrationVector width;
-
-  template <typename T>
-  Eigen::Matrix<T, kCalibrationSize, 1> At(const T* y) const {
-    Eigen::Matrix<T, kCalibrationSize, 1> theta;
-    for (int k = 0; k < kCalibrationSize; ++k) {
-      theta[k] = start[k] + width[k] * y[k];
-    }
-    return theta;
-  }
-};
-
 // One residual of a landmark as a Ceres cost function with a hand-written
 // Jacobian, by [pose of the anchor, pose of the view, inverse depth, y].
 template <typename Residual>

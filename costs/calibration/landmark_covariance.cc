@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "costs/calibration/bundle_adjustment.h"
+#include "costs/calibration/landmark_block.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,6 +7,7 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/twist.h"
 #include "costs/calibration/calibration_parameters.h"
+#include "costs/calibration/landmark_data.h"
 #include "costs/calibration/lens.h"
 
 // Residuals of a landmark: a point on the viewing ray of a pixel of one
@@ -16,32 +17,6 @@
 // model predicts with the pixels and inverse depths that the sensor measures.
 
 namespace rgbd_pose {
-
-// An inverse depth measured at a pixel of a frame.
-struct MeasuredInverseDepth {
-  double value = 0.0;          // 1/m
-  double inverse_sigma = 0.0;  // m; 0: not measured
-
-  // The surface there: the plane m . X = z through its points X, where z is the
-  // depth at this pixel and (a, b, 1) is the pixel's ray.
-  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
-  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
-
-  // The value of the nearest pixel alone and the ray of that pixel's centre, to
-  // measure noise. 0: none.
-  double pixel_value = 0.0;  // 1/m
-  Eigen::Vector3d pixel_ray = Eigen::Vector3d::UnitZ();
-
-  // The displacement of the depth camera that the image was corrected for.
-  Eigen::Vector3d undone_rotation = Eigen::Vector3d::Zero();     // rad
-  Eigen::Vector3d undone_translation = Eigen::Vector3d::Zero();  // m
-};
-
-// When a pixel of a keyframe is exposed, and the velocity of the camera.
-struct RowMotion {
-  Twist twist;
-  double row = 0.0;  // as a share of the readout: -1/2 first, 1/2 last
-};
 
 // Time from colour to depth exposure of a pixel, not yet corrected, s.
 template <typename T>
@@ -57,17 +32,6 @@ struct LandmarkDerivatives {
   Eigen::Matrix<double, kRows, 6, Eigen::RowMajor> anchor, view;
   Eigen::Matrix<double, kRows, 1> inverse_depth;
   Eigen::Matrix<double, kRows, kCalibrationSize, Eigen::RowMajor> theta;
-};
-
-// The measurements of a landmark at its anchor and in one view.
-struct LandmarkData {
-  const Camera* rest = nullptr;           // of the lens, see CalibratedLens
-  double anchor_u = 0.0, anchor_v = 0.0;  // px, as seen (distorted)
-  RowMotion anchor_motion;                // of that pixel
-  double u = 0.0, v = 0.0;                // px, in the view
-  RowMotion motion;                       // of u, v; or the anchor's
-  double inverse_sigma_px = 0.0;          // of u and v
-  MeasuredInverseDepth depth;             // of the view, or the anchor's
 };
 
 // Predicts the measured inverse depth for an inverse depth w, seen at a pixel

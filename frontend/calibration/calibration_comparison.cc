@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/motion.h"
+#include "costs/calibration/landmark_block.h"
 #include "frontend/calibration/calibration_halves.h"
 
 namespace rgbd_pose {
