@@ -41,6 +41,37 @@ struct PatchStack {
   std::array<Patch, kPatchLevels> levels;
 };
 
+// The patches of a set of features, as they are needed.
+class PatchCache {
+ public:
+  // Forgets all patches, but keeps their memory.
+  void Reset(size_t num_features) {
+    patches_.resize(num_features);
+    for (PatchStack& patch : patches_) patch.ref_from_patch.setZero();
+  }
+
+  // Returns the patches of a feature for a warp close to `ref_from_patch`. They
+  // depend on these arguments only, not on earlier calls.
+  const PatchStack& Patches(const std::vector<cv::Mat>& pyramid,
+                            const cv::Point2f& point, size_t feature,
+                            const Eigen::Matrix2f& ref_from_patch) {
+    const Eigen::Matrix2f rounded =
+        (ref_from_patch / kWarpStep).array().round() * kWarpStep;
+    PatchStack& patch = patches_[feature];
+    if (patch.ref_from_patch == rounded) return patch;
+    patch.ref_from_patch = rounded;
+    for (size_t level = 0; level < pyramid.size(); ++level) {
+      MakePatch(pyramid[level],
+                {ToLevel(point.x, level), ToLevel(point.y, level)}, rounded,
+                &patch.levels[level]);
+    }
+    return patch;
+  }
+
+ private:
+  std::vector<PatchStack> patches_;
+};
+
 struct PatchFeatures : FeatureSet {
   explicit PatchFeatures(const PreparedFrame& frame)
       : pyramid(frame.Derived<ImagePyramid>().levels) {
@@ -48,25 +79,8 @@ struct PatchFeatures : FeatureSet {
     pyramid[0] = pyramid[0].clone();
   }
 
-  // Returns the patches of a feature for a warp close to `ref_from_patch`. They
-  // depend on this argument only, not on earlier calls.
-  const PatchStack& Patches(size_t i,
-                            const Eigen::Matrix2f& ref_from_patch) const {
-    const Eigen::Matrix2f rounded =
-        (ref_from_patch / kWarpStep).array().round() * kWarpStep;
-    PatchStack& patch = patches[i];
-    if (patch.ref_from_patch == rounded) return patch;
-    patch.ref_from_patch = rounded;
-    for (size_t level = 0; level < pyramid.size(); ++level) {
-      MakePatch(pyramid[level],
-                {ToLevel(points[i].x, level), ToLevel(points[i].y, level)},
-                rounded, &patch.levels[level]);
-    }
-    return patch;
-  }
-
   std::vector<cv::Mat> pyramid;  // shares all but level 0 with the frame
-  mutable std::vector<PatchStack> patches;  // see Patches
+  mutable std::weak_ptr<PatchCache> cache;  // see PatchFrontend::CacheOf
 };
 
 // Aligns a patch coarse to fine from a start (px). A level that fails is
@@ -103,7 +117,6 @@ class PatchFrontend final : public Frontend {
          DetectGridCorners(frame, options_.max_features, options_.depth)) {
       AddFeature(frame, corner, kPatchSigmaPx, features.get());
     }
-    features->patches.resize(features->points.size());
     return features;
   }
 
@@ -117,6 +130,7 @@ class PatchFrontend final : public Frontend {
         static_cast<int>(std::min(features.pyramid.size(), pyramid.size()));
     const Camera& camera = options_.camera;
     const FrameTiming timing = frame.Timing();
+    PatchCache& cache = CacheOf(features);
     for (size_t i = 0; i < features.points.size(); ++i) {
       const Observation& ref = features.observations[i];
       if (ref.depth == 0.0) continue;  // lost with a better velocity
@@ -127,7 +141,8 @@ class PatchFrontend final : public Frontend {
       const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref_guess);
       const float scale = warp.determinant();
       if (!(scale > 1.0F / kMaxScale && scale < kMaxScale)) continue;
-      const PatchStack& patches = features.Patches(i, warp.inverse());
+      const PatchStack& patches = cache.Patches(
+          features.pyramid, features.points[i], i, warp.inverse());
       const AlignedPatch found = FindPatch(patches, num_levels, pyramid, start);
       if (!found.found || found.correlation < kMinCorrelation) continue;
       const double sigma_px = std::hypot(
@@ -137,6 +152,31 @@ class PatchFrontend final : public Frontend {
                    ObserveAt(frame, {found.u, found.v}, sigma_px));
     }
   }
+
+ private:
+  // Patches take more than a megabyte a keyframe, and memory that is used for
+  // the first time is slow. Therefore only the keyframes that were matched last
+  // have patches.
+  PatchCache& CacheOf(const PatchFeatures& features) {
+    constexpr size_t kCaches = 3;
+    const auto known =
+        std::find(caches_.begin(), caches_.end(), features.cache.lock());
+    if (known != caches_.end()) {
+      std::rotate(known, known + 1, caches_.end());
+      return *caches_.back();
+    }
+    auto cache = std::make_shared<PatchCache>();
+    if (caches_.size() == kCaches) {
+      *cache = std::move(*caches_.front());
+      caches_.erase(caches_.begin());
+    }
+    cache->Reset(features.points.size());
+    features.cache = cache;
+    caches_.push_back(std::move(cache));
+    return *caches_.back();
+  }
+
+  std::vector<std::shared_ptr<PatchCache>> caches_;  // the last used at the end
 };
 
 }  // namespace

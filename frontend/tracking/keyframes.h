@@ -20,7 +20,7 @@ struct OdometryKeyframe : Keyframe {
 // The latest keyframes, in case the view returns; the oldest is removed first.
 class Keyframes {
  public:
-  // Maximum number of keyframes: some seconds of fast motion, about 3 MB each.
+  // Maximum number of keyframes: some seconds of fast motion, about 2 MB each.
   static constexpr size_t kMaxKeyframes = 20;
 
   // Adds a keyframe; the pointer returned is valid as long as the keyframe is

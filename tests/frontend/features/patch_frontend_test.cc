@@ -91,6 +91,22 @@ TEST_F(PatchFrontendTest, TheSameFramesGiveTheSameMatches) {
   ExpectSame(once, MatchFrom(*reference, cur, Rigid3d()));
 }
 
+// Nor do other references, more than the frontend keeps the patches of.
+TEST_F(PatchFrontendTest, OtherReferencesDoNotMatter) {
+  const Frame cur = dataset_.Read(kCur);
+  std::vector<std::unique_ptr<FeatureSet>> references;
+  std::vector<FeatureMatches> once;
+  for (int i = 0; i < 5; ++i) {
+    references.push_back(Detect(dataset_.Read(kPrev + i)));
+    once.push_back(MatchFrom(*references[i], cur, Rigid3d()));
+    EXPECT_GT(once[i].matches.size(), 100u);
+  }
+  for (const int i : {4, 0, 3, 3, 1, 2, 4}) {
+    SCOPED_TRACE(i);
+    ExpectSame(once[i], MatchFrom(*references[i], cur, Rigid3d()));
+  }
+}
+
 TEST_F(PatchFrontendTest, ABlackFrameGivesNothing) {
   const Frame good = dataset_.Read(kPrev);
   const Frame black =
