@@ -8,7 +8,8 @@ namespace rgbd_pose {
 void BindCalibration(pybind11::module_* module);
 void BindCamera(pybind11::module_* module);
 void BindEstimate(pybind11::module_* module);
-void BindFactors(pybind11::module_* module);
+void BindPreintegration(pybind11::module_* module);
+void BindFactors(pybind11::module_* module);     // after BindPreintegration
 void BindPairFactor(pybind11::module_* module);  // by BindFactors
 void BindProblem(pybind11::module_* module);     // after BindFactors
 void BindRecording(pybind11::module_* module);

@@ -16,12 +16,15 @@
 #include "core/factors/common_direction.h"
 #include "core/factors/relative_pose.h"
 #include "core/geometry/camera.h"
+#include "core/inertial/preintegration.h"
 #include "core/util/input_error.h"
 #include "costs/factors/absolute_pose.h"
 #include "costs/factors/absolute_position.h"
 #include "costs/factors/constant_velocity.h"
 #include "costs/factors/distance.h"
 #include "costs/factors/gravity.h"
+#include "costs/factors/gyroscope.h"
+#include "costs/factors/inertial.h"
 #include "costs/factors/landmark.h"
 #include "costs/factors/map_plane.h"
 #include "costs/factors/relative_rotation.h"
@@ -225,6 +228,31 @@ pixel: (2,) u v in the view, with the distortion of the lens, px.
 sigma_px: standard deviation of u and of v, px.)",
       py::arg("camera").none(false), py::arg("ray"), py::arg("pixel"),
       py::arg("sigma_px") = 1.0);
+  factor(
+      "InertialFactor",
+      [](const PreintegratedMotion& motion, const object& gravity) {
+        return InertialFactor(motion, VectorFrom<3>(gravity, "gravity"));
+      },
+      R"(
+What an inertial sensor measured from i to j; over pose i, velocity i, bias i,
+pose j, velocity j, bias j. Poses are those of the sensor, world_from_sensor;
+a velocity is (3,) in the axes of the world, m/s; a bias is (6,), what the sensor
+adds to the angular velocity (rad/s) and to the acceleration (m/s^2).
+
+motion: preintegrated samples. For a bias that moves far from motion.bias
+    (0.01 rad/s over a second), preintegrate again and make a new factor.
+gravity: (3,) in the axes of the world, towards the ground, m/s^2.)",
+      py::arg("motion").none(false), py::arg("gravity"));
+  factor(
+      "GyroscopeFactor",
+      [](const PreintegratedMotion& motion) { return GyroscopeFactor(motion); },
+      R"(
+What a gyroscope alone measured from i to j; over pose i, pose j, bias. Poses are
+those of the sensor, world_from_sensor; the bias is (3,), what the gyroscope adds
+to the angular velocity, rad/s. That of several factors may be the same block.
+
+motion: preintegrated samples; their accelerations are of no importance.)",
+      py::arg("motion").none(false));
 }
 
 std::string FactorInWords(const py::object& self) {

@@ -27,6 +27,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
         "Names of the presets for Camera.load.");
   BindCamera(&m);
   BindEstimate(&m);
+  BindPreintegration(&m);
   BindFactors(&m);
   BindProblem(&m);
   BindRecording(&m);

@@ -11,6 +11,11 @@
 
 namespace rgbd_pose {
 
+// The bias of a gyroscope, rad/s.
+struct GyroscopeBiasBlock : VectorBlock<3> {
+  static constexpr char kName[] = "bias";  // for messages
+};
+
 // What a gyroscope alone measured between two poses of the sensor
 // (world_from_sensor), with its bias (rad/s) in between,
 //
@@ -20,7 +25,7 @@ namespace rgbd_pose {
 // integration. The bias is one block: its walk is not part of this factor.
 struct GyroscopeFactor {
   static constexpr char kName[] = "gyroscope";
-  using Blocks = BlockList<PoseBlock, PoseBlock, VectorBlock<3>>;
+  using Blocks = BlockList<PoseBlock, PoseBlock, GyroscopeBiasBlock>;
   static constexpr int kRows = 3;
   using ByPose = TangentJacobian<kRows, PoseBlock>;
 
@@ -54,7 +59,7 @@ struct GyroscopeFactor {
   bool Jacobian(const PoseOf<double>& i, const PoseOf<double>& j,
                 const Eigen::Vector3d& bias, double* r, ByPose* by_i,
                 ByPose* by_j,
-                TangentJacobian<kRows, VectorBlock<3>>* by_b) const {
+                TangentJacobian<kRows, GyroscopeBiasBlock>* by_b) const {
     const Eigen::Vector3d turn = by_bias * (bias - integrated_bias);
     const Eigen::Quaterniond R_m = i_from_j * RotationBy(turn);
     const Eigen::Quaterniond q = R_m.conjugate() * (i.q.conjugate() * j.q);

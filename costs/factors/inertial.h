@@ -11,9 +11,14 @@
 namespace rgbd_pose {
 
 // The velocity of a body in the world, m/s.
-using VelocityBlock = VectorBlock<3>;
+struct VelocityBlock : VectorBlock<3> {
+  static constexpr char kName[] = "velocity";  // for messages
+};
+
 // The biases of an inertial sensor, as ImuBiasVector.
-using ImuBiasBlock = VectorBlock<6>;
+struct ImuBiasBlock : VectorBlock<6> {
+  static constexpr char kName[] = "bias";  // for messages
+};
 
 // What an inertial sensor measured between two poses of its own
 // (world_from_sensor), with the velocities and the biases there,

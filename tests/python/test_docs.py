@@ -12,7 +12,7 @@ PAGE = pathlib.Path(os.environ["RGBD_POSE_SOURCES"], "docs/python.md")
 def test_examples_run(sequence, tmp_path):
     (tmp_path / "sequence").symlink_to(sequence)
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(blocks) == 10
+    assert len(blocks) == 11
     for block in blocks:
         run = subprocess.run(
             [sys.executable, "-c", block],

@@ -318,6 +318,24 @@ def coasted():
     return later, np.concatenate([TWIST[:3], turn.T @ TWIST[3:]])
 
 
+GRAVITY = 9.81 * DOWN
+STAMPS = np.linspace(0.0, SECONDS, 51)
+MEASURED = rgbd_pose.Preintegration(
+    np.column_stack([STAMPS, np.sin(np.outer(STAMPS, np.arange(1.0, 7.0)))]),
+    0.0, SECONDS, 0.01 * np.arange(6.0),
+)
+
+
+def measured():
+    """BODY, a velocity and MEASURED.bias, and what they were after SECONDS."""
+    later, R, v = BODY.copy(), BODY[:3, :3], TWIST[3:]
+    later[:3, :3] = R @ MEASURED.start_from_end
+    later[:3, 3] += (v * SECONDS + GRAVITY * SECONDS**2 / 2.0
+                     + R @ MEASURED.position)
+    return [block_row(BODY), v.copy(), MEASURED.bias.copy(), block_row(later),
+            v + GRAVITY * SECONDS + R @ MEASURED.velocity, MEASURED.bias.copy()]
+
+
 EXACT = {
     "AbsolutePoseFactor": (
         lambda: rgbd_pose.AbsolutePoseFactor(BODY, MOTION_COVARIANCE),
@@ -357,6 +375,11 @@ EXACT = {
             CAMERA, POINT[:2] / POINT[2],
             525.0 * IN_OTHER[:2] / IN_OTHER[2] + [319.5, 239.5]),
         lambda: [block_row(BODY), block_row(OTHER), np.array([0.5])]),
+    "InertialFactor": (
+        lambda: rgbd_pose.InertialFactor(MEASURED, GRAVITY), measured),
+    "GyroscopeFactor": (
+        lambda: rgbd_pose.GyroscopeFactor(MEASURED),
+        lambda: [measured()[0], measured()[3], MEASURED.bias[:3].copy()]),
 }
 
 

@@ -83,6 +83,11 @@ def test_problems_release_it(counter):
     problem.set_parameter_block_constant(poses[0])
     assert advances(counter, lambda: rgbd_pose.solve(problem, max_iterations=2))
     assert advances(counter, lambda: problem.covariance(list(poses)))
+    samples = np.zeros((20000, 7))
+    samples[:, 0] = 0.01 * np.arange(20000)
+    assert advances(
+        counter, lambda: rgbd_pose.Preintegration(samples, 0.0, 199.0)
+    )
 
 
 def test_many_threads_get_the_same(counter):

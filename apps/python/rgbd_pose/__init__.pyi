@@ -258,6 +258,41 @@ class LandmarkFactor(Factor):
         sigma_px: float = 1.0,
     ) -> None: ...
 
+class Preintegration:
+    def __init__(
+        self,
+        samples: ArrayLike,
+        start: float,
+        end: float,
+        bias: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        *,
+        gyro: float = 3e-4,
+        accel: float = 2e-3,
+        gyro_walk: float = 2e-5,
+        accel_walk: float = 3e-4,
+        max_gap: float = 0.05,
+    ) -> None: ...
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def start_from_end(self) -> _Floats: ...  # (3, 3)
+    @property
+    def velocity(self) -> _Floats: ...  # (3,), m/s
+    @property
+    def position(self) -> _Floats: ...  # (3,), m
+    @property
+    def bias(self) -> _Floats: ...  # (6,), rad/s and m/s^2
+    @property
+    def by_bias(self) -> _Floats: ...  # (9, 6)
+    @property
+    def covariance(self) -> _Floats: ...  # (15, 15)
+
+class InertialFactor(Factor):
+    def __init__(self, motion: Preintegration, gravity: ArrayLike) -> None: ...
+
+class GyroscopeFactor(Factor):
+    def __init__(self, motion: Preintegration) -> None: ...
+
 class PairFactor(Factor):
     def __init__(
         self,
