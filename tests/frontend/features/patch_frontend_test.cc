@@ -98,12 +98,12 @@ TEST_F(PatchFrontendTest, OtherReferencesDoNotMatter) {
   std::vector<FeatureMatches> once;
   for (int i = 0; i < 5; ++i) {
     references.push_back(Detect(dataset_.Read(kPrev + i)));
-    once.push_back(MatchFrom(*references[i], cur, Rigid3d()));
+    once.push_back(MatchFrom(*references[i], cur, cur_from_prev_));
     EXPECT_GT(once[i].matches.size(), 100u);
   }
   for (const int i : {4, 0, 3, 3, 1, 2, 4}) {
     SCOPED_TRACE(i);
-    ExpectSame(once[i], MatchFrom(*references[i], cur, Rigid3d()));
+    ExpectSame(once[i], MatchFrom(*references[i], cur, cur_from_prev_));
   }
 }
 
