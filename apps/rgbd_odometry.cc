@@ -65,8 +65,7 @@ int Main(const RunSettings& settings, const ProgramInfo& info) {
   const int threads = NumThreads(FLAGS_threads);
 
   // Check the input before the work starts and before anything is written.
-  Sequence sequence = OpenSequence(
-      settings.sequence, /*keep_color=*/!settings.output.record.empty());
+  Sequence sequence = OpenSequence(settings.sequence, settings.wants_color());
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
   SequenceRun run(settings.odometry, sequence.source->camera(),

@@ -113,8 +113,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
       Calibrate(settings, threads);
   const bool has_camera = found.has_value() && found->result.is_accepted;
   Sequence sequence =
-      OpenSequence(settings.sequence,
-                   /*keep_color=*/!settings.output.record.empty(),
+      OpenSequence(settings.sequence, settings.wants_color(),
                    has_camera ? &found->result.camera : nullptr);
   Warn(sequence.remarks);
   RequireMapToSave(settings);

@@ -25,6 +25,9 @@ struct RunSettings {
   RunOutputSettings output;
   ViewSettings view;
   std::string save_map;  // folder; empty: the map, if any, is not saved
+
+  // Whether anything shows or keeps colours.
+  bool wants_color() const { return view.view || !output.record.empty(); }
 };
 
 // Tracks the frames of a source, with a progress bar and warnings. Returns why

@@ -53,7 +53,7 @@ LiveView::LiveView(const std::string& title, const ViewSettings& settings,
   }
   server_ = std::make_unique<ViewServer>(title, port, &state_);
   ViewNews news;
-  for (size_t i = 0; i < run.frames().size(); ++i) AddFrame(i, &news);
+  for (size_t i = 0; i < run.frames().size(); ++i) AddFrame(i, {}, &news);
   AddMap(/*has_moved=*/true, &news);
   state_.Add(std::move(news));
 }
@@ -62,7 +62,7 @@ std::string LiveView::Add(const Frame& frame,
                           const std::function<bool()>& is_interrupted) {
   if (server_ == nullptr) return "";
   ViewNews news;
-  AddFrame(run_.frames().size() - 1, &news);
+  AddFrame(run_.frames().size() - 1, frame.color, &news);
   AddMap(!news.keyframes.empty(), &news);
   if (state_.readers() > 0) news.images = Show(frame);
   state_.Add(std::move(news));
@@ -80,12 +80,13 @@ void LiveView::Finish(const std::string& results) {
   server_.reset();
 }
 
-void LiveView::AddFrame(size_t index, ViewNews* news) {
+void LiveView::AddFrame(size_t index, const cv::Mat& color, ViewNews* news) {
   const TrackedFrame& tracked = run_.frames()[index];
   if (tracked.previous_is_reference) {
-    AddKeyframe(run_.frames()[index - 1], news);
+    AddKeyframe(run_.frames()[index - 1], previous_color_, news);
   }
-  if (tracked.is_reference) AddKeyframe(tracked, news);
+  if (tracked.is_reference) AddKeyframe(tracked, color, news);
+  previous_color_ = color;
   ViewFrame shown = {tracked, std::nullopt, {}};
   shown.edges = std::vector<RelativePose>();  // frees them
   if (tracked.status != TrackingStatus::kLost) {
@@ -99,14 +100,15 @@ void LiveView::AddFrame(size_t index, ViewNews* news) {
   news->frames.push_back(std::move(shown));
 }
 
-void LiveView::AddKeyframe(const TrackedFrame& tracked, ViewNews* news) {
+void LiveView::AddKeyframe(const TrackedFrame& tracked, const cv::Mat& color,
+                           ViewNews* news) {
   if (map_ == nullptr) keyframes_[tracked.index] = tracked.world_from_cam;
   const OdometryKeyframe* keyframe =
       run_.odometry().FindKeyframe(tracked.index);
   if (keyframe == nullptr) return;
   news->keyframes.push_back(
       {map_ == nullptr ? tracked.index : map_->MapId(tracked.index),
-       SamplePoints(keyframe->frame, camera_)});
+       SamplePoints(keyframe->frame, color, camera_)});
 }
 
 // Adds the keyframe poses, if they have changed, and the new links.

@@ -49,8 +49,9 @@ class LiveView {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void AddFrame(size_t index, ViewNews* news);
-  void AddKeyframe(const TrackedFrame& tracked, ViewNews* news);
+  void AddFrame(size_t index, const cv::Mat& color, ViewNews* news);
+  void AddKeyframe(const TrackedFrame& tracked, const cv::Mat& color,
+                   ViewNews* news);
   void AddMap(bool has_moved, ViewNews* news);
   ViewImages Show(Frame frame) const;
   void KeepPace(const std::function<bool()>& is_interrupted);
@@ -64,6 +65,7 @@ class LiveView {
   std::unique_ptr<ViewServer> server_;  // null: not requested
 
   std::map<int, Rigid3d> keyframes_;  // for a run without a map
+  cv::Mat previous_color_;            // of the last frame
   size_t links_ = 0;                  // number of map links shown so far
   Clock::time_point due_ = {};        // when the last frame had to be shown
 };

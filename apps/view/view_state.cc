@@ -142,7 +142,9 @@ void ViewState::WaitForControl(std::chrono::milliseconds patience) {
   changed_.wait_for(lock, patience, [&] { return controls_ != before; });
 }
 
-std::string SamplePoints(const Frame& frame, const Camera& camera) {
+std::string SamplePoints(const Frame& frame, const cv::Mat& color,
+                         const Camera& camera) {
+  const bool has_color = color.size() == frame.gray.size();
   const int step = std::max(1, frame.gray.cols / kColumns);
   std::vector<cv::Point> pixels;
   for (int v = step / 2; v < frame.gray.rows; v += step) {
@@ -163,7 +165,11 @@ std::string SamplePoints(const Frame& frame, const Camera& camera) {
                              static_cast<int16_t>(std::lround(1e3 * metres))),
                          &bytes);
     }
-    bytes += static_cast<char>(frame.gray.at<uint8_t>(pixel));
+    const cv::Vec3b bgr = has_color
+                              ? color.at<cv::Vec3b>(pixel)
+                              : cv::Vec3b::all(frame.gray.at<uint8_t>(pixel));
+    for (const int channel : {2, 1, 0})
+      bytes += static_cast<char>(bgr[channel]);
   }
   return bytes;
 }

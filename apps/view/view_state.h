@@ -109,11 +109,13 @@ class ViewState {
 };
 
 // Bytes of a point on the page: x, y, z in camera axes (mm, 16 bits each,
-// signed, low byte first) and its grey level.
-constexpr size_t kViewPointBytes = 7;
+// signed, low byte first), then red, green and blue.
+constexpr size_t kViewPointBytes = 9;
 
 // Samples visible points in random order: the first n cover the whole view.
-std::string SamplePoints(const Frame& frame, const Camera& camera);
+// `color`: as Frame::color; grey levels are taken if it is empty.
+std::string SamplePoints(const Frame& frame, const cv::Mat& color,
+                         const Camera& camera);
 
 // ViewImages::moves of a frame with a known velocity: where its rows were
 // exposed, not as at the time stamp. `weights` are those of MotionEstimate.

@@ -5,7 +5,7 @@ const STATUS = ['ok', 'degraded', 'lost'];
 
 // Above this number of points, each keyframe drops half of its points.
 const MAX_POINTS = 200000;
-const POINT_BYTES = 7;
+const POINT_BYTES = 9;  // see kViewPointBytes
 
 // Reads a pose of the server from index `at`: x, y, z, quaternion x, y, z, w.
 function readPose(row, at) {

@@ -183,8 +183,9 @@ class Scene {
         const size = Math.min(5, Math.max(1, Math.round(f * POINT_SIZE / depth)));
         const left = Math.round(u - size / 2), top = Math.round(v - size / 2);
         if (left < 0 || top < 0 || left + size > width || top + size > height) continue;
-        const gray = 38 + 0.76 * points[at + 6];
-        const color = 0xff000000 | Math.min(255, gray * 1.04) << 16 | gray << 8 | gray * 0.96;
+        const red = 24 + 0.9 * points[at + 6], green = 24 + 0.9 * points[at + 7];
+        const blue = 24 + 0.9 * points[at + 8];
+        const color = 0xff000000 | blue << 16 | green << 8 | red;
         for (let row = top; row < top + size; ++row) {
           for (let pixel = row * width + left, k = 0; k < size; ++k, ++pixel) {
             if (depth >= nearest[pixel]) continue;

@@ -10,9 +10,9 @@ TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
   Frame frame;
   frame.gray = cv::Mat(120, 160, CV_8UC1, cv::Scalar(77));
   frame.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(0));
-  EXPECT_EQ(SamplePoints(frame, camera), "");  // no depth is measured
-  frame.depth.setTo(10000);                    // 2 m
-  const std::string bytes = SamplePoints(frame, camera);
+  EXPECT_EQ(SamplePoints(frame, {}, camera), "");  // no depth is measured
+  frame.depth.setTo(10000);                        // 2 m
+  const std::string bytes = SamplePoints(frame, {}, camera);
   ASSERT_GT(bytes.size(), 1000 * kViewPointBytes);
   ASSERT_EQ(bytes.size() % kViewPointBytes, 0U);
   double sum = 0.0;
@@ -27,13 +27,26 @@ TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
     EXPECT_EQ(number(4), 2000);
     EXPECT_LE(std::abs(number(0)), 1600);  // 80 px at f = 100 px and 2 m
     EXPECT_LE(std::abs(number(2)), 1200);
-    EXPECT_EQ(bytes[i * kViewPointBytes + 6], 77);
+    EXPECT_EQ(bytes.substr(i * kViewPointBytes + 6, 3), "MMM");  // grey 77
     sum += number(0);
     if (i < points / 8) left += number(0) < 0;
   }
   EXPECT_NEAR(sum / static_cast<double>(points), 0.0, 20.0);
   // The first points are spread over the whole image.
   EXPECT_NEAR(left / (points / 8.0), 0.5, 0.15);
+}
+
+TEST(ViewPointsTest, PointsHaveTheColoursOfTheirPixels) {
+  const Camera camera = {160, 120, 100, 100, 80, 60, 0, 0, 0};
+  Frame frame;
+  frame.gray = cv::Mat(120, 160, CV_8UC1, cv::Scalar(77));
+  frame.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(10000));
+  const cv::Mat color(120, 160, CV_8UC3, cv::Scalar('b', 'g', 'r'));
+  const std::string bytes = SamplePoints(frame, color, camera);
+  ASSERT_GT(bytes.size(), 1000 * kViewPointBytes);
+  for (size_t at = 6; at < bytes.size(); at += kViewPointBytes) {
+    ASSERT_EQ(bytes.substr(at, 3), "rgb");
+  }
 }
 
 // Rows that are exposed late see a turning camera's image moved on.
