@@ -100,11 +100,12 @@ inline double CalibrationFloor(int parameter, int keyframes) {
 }
 
 // The solver's calibration parameters y, in standard deviations of the prior:
-// theta = start + width . y. Fixed parameters have width 0.
+// theta = start + width . y.
 struct CalibrationOrigin {
-  CalibrationVector start;
-  CalibrationVector width;
+  CalibrationVector start;  // theta at y = 0
+  CalibrationVector width;  // of one y; 0: the parameter is fixed
 
+  // theta at y, which has kCalibrationSize numbers.
   template <typename T>
   Eigen::Matrix<T, kCalibrationSize, 1> At(const T* y) const {
     Eigen::Matrix<T, kCalibrationSize, 1> theta;
