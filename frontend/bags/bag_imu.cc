@@ -86,6 +86,8 @@ ImuTopics ChooseImuTopics(const BagReader& bag,
     chosen.accel = Nearest(accel, color);
     chosen.gyro = Nearest(gyro, chosen.accel);
     chosen.had_choice = accel.size() > 1 || gyro.size() > 1;
+  } else {
+    chosen.gyro = Nearest(gyro, color);
   }
   const bool is_each_used = names.size() == (chosen.accel.empty() ? 0u
                                              : chosen.is_split()  ? 2u

@@ -11,7 +11,7 @@ namespace rgbd_pose {
 
 // The topics of the inertial sensor of a recording, of sensor_msgs/Imu.
 struct ImuTopics {
-  std::string accel;  // empty: there is no sensor
+  std::string accel;  // empty: there is no sensor, or a gyroscope alone
   std::string gyro;   // the same topic if its messages have both; empty: none
 
   // Whether other topics were suitable as well.

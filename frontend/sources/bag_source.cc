@@ -119,7 +119,10 @@ class BagSource final : public FrameSource {
   // Prepares to read the inertial sensor. Returns false if there is none.
   bool OpenImu(const SourceOptions& options) {
     if (topics_.imu.accel.empty()) {
-      if (options.imu.empty()) return false;
+      if (options.imu.empty()) {
+        lone_gyro_ = topics_.imu.gyro;
+        return false;
+      }
       throw InputError(bag_->path() +
                        ": has no inertial sensor (sensor_msgs/Imu); leave imu "
                        "(--imu) out");
@@ -153,6 +156,11 @@ class BagSource final : public FrameSource {
   }
 
   void AddImuRemarks(std::vector<std::string>* lines) const {
+    if (!lone_gyro_.empty()) {
+      lines->push_back(bag_->path() + ": " + lone_gyro_ +
+                       " is not used: no topic has the accelerations of this "
+                       "sensor; record its accelerometer, too");
+    }
     if (!imu_sensor_.has_value()) return;
     const std::string name = bag_->path() + ": " + topics_.imu.accel;
     if (topics_.imu.had_choice) {
@@ -258,6 +266,7 @@ class BagSource final : public FrameSource {
   TransformTree transforms_;
   std::optional<BagImu> imu_;
   std::optional<ImuSensor> imu_sensor_;  // nothing: its messages are not read
+  std::string lone_gyro_;  // topic of a gyroscope without an accelerometer
   ImuFeed imu_feed_;
   double received_ = 0.0;  // the recorder's time of the last message, s
   Stream color_;

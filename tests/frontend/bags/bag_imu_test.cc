@@ -124,6 +124,21 @@ TEST_F(BagImuTest, SeparateStreamsAreInterpolatedToOne) {
   ExpectSamples(source.get(), 400.0);
 }
 
+TEST_F(BagImuTest, AGyroscopeAloneIsLeftOutWithALine) {
+  Open();
+  WriteAll();
+  WriteStream(kGyro, 400.0, [](double after) { return MakeImu(after, 0.0); });
+  const auto source = Source();
+  EXPECT_FALSE(source->imu().has_value());
+  EXPECT_THAT(source->remarks(),
+              testing::ElementsAre(HasSubstr(
+                  "a.bag: /camera/gyro/sample is not used: no topic has")));
+  ExpectFrames(source.get(), kFrames);
+  SourceOptions options = Options();
+  options.imu = "none";
+  EXPECT_THAT(OpenSource("auto", options)->remarks(), testing::IsEmpty());
+}
+
 TEST_F(BagImuTest, AUnitedStreamIsTakenBeforeSeparateOnes) {
   Open();
   WriteAll();
