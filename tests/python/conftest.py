@@ -40,12 +40,17 @@ def rotation(axis, angle):
     return np.eye(3) + np.sin(angle) * k + (1.0 - np.cos(angle)) * k @ k
 
 
+def rigid(axis, angle, translation):
+    """(4, 4)."""
+    result = np.eye(4)
+    result[:3, :3] = rotation(axis, angle)
+    result[:3, 3] = translation
+    return result
+
+
 def motion():
     """(4, 4) cur_from_prev: 5 degrees and about 10 cm."""
-    result = np.eye(4)
-    result[:3, :3] = rotation([1.0, -2.0, 0.5], np.radians(5.0))
-    result[:3, 3] = [0.05, -0.04, 0.07]
-    return result
+    return rigid([1.0, -2.0, 0.5], np.radians(5.0), [0.05, -0.04, 0.07])
 
 
 def move(cur_from_prev, points):
@@ -67,3 +72,8 @@ def add_kinect_noise(points, rng, camera):
     depth = z + rng.normal(0.0, 1.425e-3 * z**2)
     rays = pixels / [camera.fx, camera.fy]
     return np.column_stack([rays * depth[:, None], depth])
+
+
+def raises_one_line(pattern):
+    """InputError of a single line that matches from its start to its end."""
+    return pytest.raises(rgbd_pose.InputError, match=f"^{pattern}$")
