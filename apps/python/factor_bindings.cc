@@ -181,7 +181,7 @@ linear_density: the same of the linear velocity, m/s^2/sqrt(Hz).)",
       },
       R"(
 A known distance between a point of one body and a point of another; over the
-poses a and b.
+poses a and b. Where the points coincide it has no direction and moves nothing.
 
 metres: the measured distance.
 sigma: its standard deviation, m.
