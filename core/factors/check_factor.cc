@@ -6,8 +6,10 @@
 
 #include "core/util/input_error.h"
 
-namespace rgbd_pose::factors {
+namespace rgbd_pose {
 namespace {
+
+using factors::BlockKind;
 
 // States are drawn again where a residual cannot be evaluated, at most so many
 // times as often.
@@ -31,27 +33,25 @@ struct Evaluated {
 
 class Checker {
  public:
-  Checker(const std::vector<BlockKind>& kinds,
-          const ceres::CostFunction& by_hand,
-          const ceres::CostFunction& by_autodiff,
-          const CheckFactorOptions& options)
-      : kinds_(kinds),
-        by_hand_(by_hand),
-        by_autodiff_(by_autodiff),
+  // Throws InputError if the blocks of options.near are not the factor's.
+  Checker(const CheckableFactor& factor, const CheckFactorOptions& options)
+      : name_(factor.name),
+        kinds_(factor.kinds),
+        by_hand_(*factor.by_hand),
+        by_autodiff_(*factor.by_autodiff),
+        near_(options.near.empty() ? factor.near : options.near),
         options_(options),
         random_(options.seed) {
-    for (size_t i = 0; i < kinds.size(); ++i) {
-      for (int k = 0; k < kinds[i].tangent; ++k) {
+    RequireFittingBlocks();
+    for (size_t i = 0; i < kinds_.size(); ++i) {
+      for (int k = 0; k < kinds_[i].tangent; ++k) {
         columns_.push_back({static_cast<int>(i), k});
       }
     }
-    rows_ = by_hand.num_residuals();
+    rows_ = by_hand_.num_residuals();
     worst_.resize(rows_ * columns_.size());
-    for (const BlockKind& kind : kinds) errors_.push_back({kind.name});
+    for (const BlockKind& kind : kinds_) errors_.push_back({kind.name});
     wrong_residuals_.resize(rows_);
-  }
-
-  void Run() {
     while (valid_ < options_.samples && tries_ < kMaxTries * options_.samples) {
       ++tries_;
       valid_ += CheckAt(RandomState());
@@ -67,7 +67,7 @@ class Checker {
   }
 
   // A line for each mistake.
-  std::string Text(const std::string& name) const {
+  std::string Text() const {
     std::vector<std::string> lines;
     if (valid_ < options_.samples) {
       lines.push_back("could be evaluated at only " + std::to_string(valid_) +
@@ -82,11 +82,11 @@ class Checker {
     std::string text;
     for (int i = 0; i < static_cast<int>(lines.size()); ++i) {
       if (i == kMaxLines) {
-        text += name + ": and " + std::to_string(lines.size() - kMaxLines) +
+        text += name_ + ": and " + std::to_string(lines.size() - kMaxLines) +
                 " more\n";
         break;
       }
-      text += name + ": " + lines[i] + "\n";
+      text += name_ + ": " + lines[i] + "\n";
     }
     return text;
   }
@@ -104,10 +104,21 @@ class Checker {
     int jumps = 0;   // states near which the residual is not smooth
   };
 
+  void RequireFittingBlocks() const {
+    bool fits = near_.empty() || near_.size() == kinds_.size();
+    for (size_t i = 0; fits && i < near_.size(); ++i) {
+      fits = static_cast<int>(near_[i].size()) == kinds_[i].size;
+    }
+    if (!fits) {
+      throw InputError("CheckFactorOptions::near must have the " +
+                       std::to_string(kinds_.size()) + " blocks of " + name_);
+    }
+  }
+
   State RandomState() {
     State state;
     for (size_t i = 0; i < kinds_.size(); ++i) {
-      if (options_.near.empty()) {
+      if (near_.empty()) {
         state.push_back(kinds_[i].random(&random_));
         continue;
       }
@@ -115,7 +126,7 @@ class Checker {
       for (double& value : d) {
         value = random_.Uniform(-options_.spread, options_.spread);
       }
-      kinds_[i].plus(options_.near[i].data(), d.data(), moved.data());
+      kinds_[i].plus(near_[i].data(), d.data(), moved.data());
       state.push_back(moved);
     }
     return state;
@@ -266,9 +277,11 @@ class Checker {
     }
   }
 
+  const std::string& name_;
   const std::vector<BlockKind>& kinds_;
   const ceres::CostFunction& by_hand_;
   const ceres::CostFunction& by_autodiff_;
+  const std::vector<std::vector<double>>& near_;
   const CheckFactorOptions& options_;
   FactorSampler random_;
   std::vector<Column> columns_;
@@ -280,38 +293,16 @@ class Checker {
   int refused_ = 0;
 };
 
-Checker Checked(const std::string& name, const std::vector<BlockKind>& kinds,
-                const ceres::CostFunction& by_hand,
-                const ceres::CostFunction& by_autodiff,
-                const CheckFactorOptions& options) {
-  bool fits = options.near.empty() || options.near.size() == kinds.size();
-  for (size_t i = 0; fits && i < options.near.size(); ++i) {
-    fits = static_cast<int>(options.near[i].size()) == kinds[i].size;
-  }
-  if (!fits) {
-    throw InputError("CheckFactorOptions::near must have the " +
-                     std::to_string(kinds.size()) + " blocks of " + name);
-  }
-  Checker checker(kinds, by_hand, by_autodiff, options);
-  checker.Run();
-  return checker;
-}
-
 }  // namespace
 
-std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
-                  const ceres::CostFunction& by_hand,
-                  const ceres::CostFunction& by_autodiff,
-                  const CheckFactorOptions& options) {
-  return Checked(name, kinds, by_hand, by_autodiff, options).Text(name);
+std::string CheckFactor(const CheckableFactor& factor,
+                        const CheckFactorOptions& options) {
+  return Checker(factor, options).Text();
 }
 
-std::vector<FactorErrors> Errors(const std::string& name,
-                                 const std::vector<BlockKind>& kinds,
-                                 const ceres::CostFunction& by_hand,
-                                 const ceres::CostFunction& by_autodiff,
-                                 const CheckFactorOptions& options) {
-  return Checked(name, kinds, by_hand, by_autodiff, options).Errors();
+std::vector<FactorErrors> ErrorsOfFactor(const CheckableFactor& factor,
+                                         const CheckFactorOptions& options) {
+  return Checker(factor, options).Errors();
 }
 
-}  // namespace rgbd_pose::factors
+}  // namespace rgbd_pose

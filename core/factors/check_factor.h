@@ -64,53 +64,54 @@ std::vector<BlockKind> KindsOf(BlockList<B...> /*blocks*/) {
        }}...};
 }
 
-std::string Check(const std::string& name, const std::vector<BlockKind>& kinds,
-                  const ceres::CostFunction& by_hand,
-                  const ceres::CostFunction& by_autodiff,
-                  const CheckFactorOptions& options);
-
-std::vector<FactorErrors> Errors(const std::string& name,
-                                 const std::vector<BlockKind>& kinds,
-                                 const ceres::CostFunction& by_hand,
-                                 const ceres::CostFunction& by_autodiff,
-                                 const CheckFactorOptions& options);
-
 // Detects a state at which a factor can be evaluated.
 template <typename Factor, typename = void>
 constexpr bool kHasNear = false;
 template <typename Factor>
 constexpr bool kHasNear<Factor, std::void_t<decltype(&Factor::Near)>> = true;
 
-// Calls check(name, kinds, by_hand, by_autodiff, options).
-template <typename Factor, typename Check>
-auto With(const Factor& factor, CheckFactorOptions options, Check check) {
-  if constexpr (kHasNear<Factor>) {
-    if (options.near.empty()) options.near = Factor::Near();
-  }
-  const std::unique_ptr<ceres::CostFunction> by_hand(MakeFactor(factor));
-  const std::unique_ptr<ceres::CostFunction> oracle(MakeAutodiffFactor(factor));
-  return check(Factor::kName, KindsOf(typename Factor::Blocks()), *by_hand,
-               *oracle, options);
-}
-
 }  // namespace factors
+
+// A factor of any type, as its check sees it.
+struct CheckableFactor {
+  std::string name;
+  std::vector<factors::BlockKind> kinds;  // of its blocks
+  std::unique_ptr<ceres::CostFunction> by_hand, by_autodiff;
+  std::vector<std::vector<double>> near;  // see CheckFactorOptions
+};
+
+// Makes a factor one that can be checked without its type.
+template <typename Factor>
+CheckableFactor MakeCheckable(const Factor& factor) {
+  CheckableFactor made;
+  made.name = Factor::kName;
+  made.kinds = factors::KindsOf(typename Factor::Blocks());
+  made.by_hand.reset(MakeFactor(factor));
+  made.by_autodiff.reset(MakeAutodiffFactor(factor));
+  if constexpr (factors::kHasNear<Factor>) made.near = Factor::Near();
+  return made;
+}
 
 // Compares the hand-written Jacobian of a factor with automatic differentiation
 // and with central differences, and Residual with what Jacobian fills in.
 // Empty if they agree at all states. Otherwise a line for each wrong entry says
 // its row, block and direction, and the values where they differ most.
+std::string CheckFactor(const CheckableFactor& factor,
+                        const CheckFactorOptions& options = {});
 template <typename Factor>
 std::string CheckFactor(const Factor& factor,
                         const CheckFactorOptions& options = {}) {
-  return factors::With(factor, options, factors::Check);
+  return CheckFactor(MakeCheckable(factor), options);
 }
 
 // The same as figures: the errors of the Jacobian by each block, in their
 // order.
+std::vector<FactorErrors> ErrorsOfFactor(
+    const CheckableFactor& factor, const CheckFactorOptions& options = {});
 template <typename Factor>
 std::vector<FactorErrors> ErrorsOfFactor(
     const Factor& factor, const CheckFactorOptions& options = {}) {
-  return factors::With(factor, options, factors::Errors);
+  return ErrorsOfFactor(MakeCheckable(factor), options);
 }
 
 }  // namespace rgbd_pose

@@ -25,7 +25,7 @@
 // Residuals are whitened: one sigma is 1. Jacobian fills in r, too, and is by
 // hand, in the tangent (core/factors/blocks.h); a factor without it is
 // differentiated automatically. False rejects the step, as in Ceres. To be in
-// FactorTypes (costs/factors/factor_list.h) it also has
+// FactorTypes (costs/factors/factor_list.cc) it also has
 //
 //     static Factor Sample(FactorSampler* random);   random measurements
 //     static std::vector<std::vector<double>> Near();

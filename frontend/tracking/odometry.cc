@@ -50,6 +50,16 @@ bool IsSlow(const CameraTurn& turn, const MotionMatrix& acceleration) {
          acceleration(0, 0) <= kLargestBend * kLargestBend;
 }
 
+void RequireSize(const Frame& frame, const Camera& camera) {
+  const cv::Size size(camera.width, camera.height);
+  if (frame.gray.size() != size || frame.depth.size() != size) {
+    throw InputError(
+        Format("odometry: grey and depth image must have the size of the "
+               "camera, %d x %d",
+               size.width, size.height));
+  }
+}
+
 }  // namespace
 
 std::string OdometryOptions::Check() const {
@@ -88,28 +98,32 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
   PreparedFrame frame = measured;
-  const Camera& camera = tracker_->images().camera;
-  const cv::Size size(camera.width, camera.height);
-  if (frame.gray.size() != size || frame.depth.size() != size) {
-    throw InputError(
-        Format("odometry: grey and depth image must have the size of the "
-               "camera, %d x %d",
-               size.width, size.height));
-  }
+  RequireSize(frame, tracker_->images().camera);
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
-  const double last_interval = state_.interval;
-  state_.interval = result.index > 0 ? frame.timestamp - state_.timestamp : 0.0;
-  // Across missing frames, the motion at constant velocity is longer.
-  if (last_interval > 0.0 && state_.interval > 0.0 &&
-      state_.interval < kMaxMovedOn &&
-      (state_.interval > kMissingFrames * last_interval ||
-       last_interval > kMissingFrames * state_.interval)) {
-    state_.cur_from_prev = TwistOf(state_.cur_from_prev, last_interval)
-                               .MotionDuring(state_.interval);
+  Begin(frame);
+  {
+    const StageTimer timer(&result.track_ms);
+    if (!state_.carried.empty()) {
+      frame.depth = state_.carried.WithoutRegion(frame.depth);
+    }
+    std::optional<Prediction> prediction;
+    if (cur_from_prev_guess != nullptr) {
+      prediction = Predict(*cur_from_prev_guess, guess_covariance);
+    }
+    FindPose(frame, prediction, &result);
   }
-  state_.timestamp = frame.timestamp;
+  result.world_from_cam = WorldFromCam();
+  result.segment = state_.segment;
+  Judge(&result);
+  Learn(frame, result);
+  KeepLast(frame, &result);
+  return result;
+}
+
+void Odometry::Begin(const Frame& frame) {
+  UpdateInterval(frame.timestamp);
   state_.stamp_jitter.Add(frame.depth_delay, state_.interval);
   state_.has_shutter = HasShutter(frame);
   state_.twist.reset();
@@ -129,68 +143,81 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
     state_.turn =
         inertial_->Turn(frame.timestamp - state_.interval, frame.timestamp);
   }
-  {
-    const StageTimer timer(&result.track_ms);
-    if (!state_.carried.empty()) {
-      frame.depth = state_.carried.WithoutRegion(frame.depth);
-    }
-    std::optional<Prediction> prediction;
-    if (cur_from_prev_guess != nullptr) {
-      prediction = Predict(*cur_from_prev_guess, guess_covariance);
-    }
-    if (state_.reference == nullptr) {
-      if (TakeReference(frame, WorldFromCam(), &result)) {
-        result.status = TrackingStatus::kOk;
-      }
-    } else if (state_.is_lost && options_.on_lost == LostPolicy::kStop) {
-      result.reason = "stopped after an earlier frame was lost";
-    } else if (!Follow(frame, prediction, &result) &&
-               !Relocalise(frame, &result) && !GoOnBlindly(frame, &result)) {
-      HandleLost(frame, prediction, &result);
-    }
+}
+
+void Odometry::UpdateInterval(double timestamp) {
+  const double last_interval = state_.interval;
+  const bool is_first = num_frames_ == 1;
+  state_.interval = is_first ? 0.0 : timestamp - state_.timestamp;
+  state_.timestamp = timestamp;
+  // Across missing frames, the motion at constant velocity is longer.
+  if (last_interval > 0.0 && state_.interval > 0.0 &&
+      state_.interval < kMaxMovedOn &&
+      (state_.interval > kMissingFrames * last_interval ||
+       last_interval > kMissingFrames * state_.interval)) {
+    state_.cur_from_prev = TwistOf(state_.cur_from_prev, last_interval)
+                               .MotionDuring(state_.interval);
   }
-  result.world_from_cam = WorldFromCam();
-  result.segment = state_.segment;
+}
+
+void Odometry::FindPose(const PreparedFrame& frame,
+                        const std::optional<Prediction>& prediction,
+                        TrackedFrame* result) {
+  if (state_.reference == nullptr) {
+    if (TakeReference(frame, WorldFromCam(), result)) {
+      result->status = TrackingStatus::kOk;
+    }
+  } else if (state_.is_lost && options_.on_lost == LostPolicy::kStop) {
+    result->reason = "stopped after an earlier frame was lost";
+  } else if (!Follow(frame, prediction, result) && !Relocalise(frame, result) &&
+             !GoOnBlindly(frame, result)) {
+    HandleLost(frame, prediction, result);
+  }
+}
+
+void Odometry::Judge(TrackedFrame* result) {
   if (state_.earlier_segment.has_value() &&
-      result.status == TrackingStatus::kOk) {
-    result.status = TrackingStatus::kDegraded;
-    result.reason = "not yet reconnected to the previous segment";
+      result->status == TrackingStatus::kOk) {
+    result->status = TrackingStatus::kDegraded;
+    result->reason = "not yet reconnected to the previous segment";
   }
   // With ignored shutters, all of a fast camera's frames err so.
-  if (options_.shutter == ShutterUse::kCamera) JudgeInflation(&result);
-  if (result.status == TrackingStatus::kOk) {
-    const OdometryKeyframe* const reference = FindKeyframe(result.reference);
-    if (reference != nullptr) {
-      state_.carried.Learn(reference->frame, frame, camera,
-                           result.cur_from_reference);
-    }
+  if (options_.shutter == ShutterUse::kCamera) JudgeInflation(result);
+}
+
+void Odometry::Learn(const Frame& frame, const TrackedFrame& result) {
+  const bool is_ok = result.status == TrackingStatus::kOk;
+  const OdometryKeyframe* const reference =
+      is_ok ? FindKeyframe(result.reference) : nullptr;
+  if (reference != nullptr) {
+    state_.carried.Learn(reference->frame, frame, tracker_->images().camera,
+                         result.cur_from_reference);
   }
   if (inertial_.has_value()) inertial_->Learn(result);
-  if (result.status == TrackingStatus::kOk) {
+  if (is_ok) {
     state_.seen = {state_.reference->id, state_.cur_from_ref,
                    state_.covariance};
   }
+}
+
+void Odometry::KeepLast(const PreparedFrame& frame, TrackedFrame* result) {
   state_.last.reset();
   // What the inertial sensor alone has placed may show another place, from
   // where the next frame is tracked once the camera turns slowly enough.
-  const bool is_blurred =
-      result.source == TrackingSource::kInertial &&
+  if (result->source == TrackingSource::kInertial &&
       !IsSlow(state_.turn.value_or(CameraTurn()),
-              state_.shutter_tracking.acceleration_covariance());
-  if (is_blurred) {
-    result.reason = "too quick a turn for images: inertial sensor only";
+              state_.shutter_tracking.acceleration_covariance())) {
+    result->reason = "too quick a turn for images: inertial sensor only";
+    return;
   }
-  if (result.status != TrackingStatus::kLost && !result.is_reference &&
-      !is_blurred) {
-    state_.last = {result.index,
-                   state_.segment,
-                   result.world_from_cam,
-                   frame.WithTwist(state_.twist),
-                   {},
-                   {},
-                   state_.twist_covariance + state_.timing_covariance};
-  }
-  return result;
+  if (result->status == TrackingStatus::kLost || result->is_reference) return;
+  state_.last = {result->index,
+                 state_.segment,
+                 result->world_from_cam,
+                 frame.WithTwist(state_.twist),
+                 {},
+                 {},
+                 state_.twist_covariance + state_.timing_covariance};
 }
 
 void Odometry::JudgeInflation(TrackedFrame* result) {

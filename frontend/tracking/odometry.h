@@ -168,11 +168,26 @@ class Odometry {
     double left_at = 0.0;  // time stamp of the first new frame, s
   };
 
+  // The stages of a frame, in this order.
+
+  // Sets what is known of its times before its images are looked at.
+  void Begin(const Frame& frame);
+  void UpdateInterval(double timestamp);
+  void FindPose(const PreparedFrame& frame,
+                const std::optional<Prediction>& prediction,
+                TrackedFrame* result);
+  // Degrades a pose which its own residuals do not contradict.
+  void Judge(TrackedFrame* result);
+  // Degrades a frame whose covariance was inflated far more than usual.
+  void JudgeInflation(TrackedFrame* result);
+  // Learns from a pose what is carried along and what the sensor's errors are.
+  void Learn(const Frame& frame, const TrackedFrame& result);
+  // Keeps the frame as the one that the next is aligned to, if it is fit.
+  void KeepLast(const PreparedFrame& frame, TrackedFrame* result);
+
   // Covariance of the motion due to the uncertain capture time at `twist`.
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
 
-  // Degrades a frame whose covariance was inflated far more than usual.
-  void JudgeInflation(TrackedFrame* result);
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
   TrackingGuess GuessOf(const Rigid3d& cur_from_ref) const {
@@ -188,6 +203,13 @@ class Odometry {
   // The motion since the last frame as it is expected without looking: at
   // constant velocity, turned by the gyroscope if there is one.
   Rigid3d Expected() const;
+  // Tracks a frame against state_.reference, as TrackingAttempts does.
+  bool Try(const PreparedFrame& frame,
+           const std::optional<Prediction>& prediction,
+           const VelocityPrior* velocity, TrackedFrame* result);
+  // The velocity by what was measured between the last frame and this one.
+  std::optional<Twist> TwistSinceLast(
+      const std::optional<Prediction>& prediction) const;
   // Tracks a frame against state_.reference. Returns it as tracked, or null if
   // lost. The refinement is left to Follow.
   const PreparedFrame* Look(const PreparedFrame& frame,

@@ -63,7 +63,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   if (!place.has_value()) return false;
   OdometryKeyframe* keyframe = keyframes_.Find(place->keyframe);
   TrackingGuess guess = GuessOf(place->cur_from_keyframe);
-  VelocityPrior velocity = state_.shutter_tracking.velocity()->Prior(
+  VelocityPrior velocity = state_.shutter_tracking.velocity().Prior(
       std::nullopt, state_.interval, frame.color_shutter.offset);
   if (inertial_.has_value()) velocity.measured = inertial_->TwistDuring(frame);
   if (state_.has_shutter && state_.interval > 0.0) guess.velocity = &velocity;
@@ -122,7 +122,7 @@ bool Odometry::GoOnBlindly(const Frame& frame, TrackedFrame* result) {
 // The next frame with an image starts with this velocity, and so does this one
 // if it becomes a reference.
 void Odometry::GoOnWithVelocity(const Frame& frame) {
-  VelocityPrior prior = state_.shutter_tracking.velocity()->Prior(
+  VelocityPrior prior = state_.shutter_tracking.velocity().Prior(
       std::nullopt, state_.interval, frame.color_shutter.offset);
   prior.measured = inertial_->TwistDuring(frame);
   const Twist mean = TwistOf(state_.cur_from_prev, state_.interval);

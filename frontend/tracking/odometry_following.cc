@@ -102,48 +102,67 @@ Rigid3d Odometry::Expected() const {
 // Tracks from where coarse images say that the camera is. Where they do not say
 // it, from the last pose, and only then from a constant velocity, which can
 // lock onto its own false motion.
-const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
-                                    const std::optional<Prediction>& prediction,
-                                    TrackedFrame* result) {
-  Rigid3d first = state_.cur_from_ref;
-  Rigid3d second = Expected() * state_.cur_from_ref;
-  // What a gyroscope has measured is no assumption.
-  if (state_.turn.has_value()) std::swap(first, second);
+bool Odometry::Try(const PreparedFrame& frame,
+                   const std::optional<Prediction>& prediction,
+                   const VelocityPrior* velocity, TrackedFrame* result) {
+  const OdometryKeyframe& reference = *state_.reference;
+  const bool tries_everything = state_.effort == Effort::kEverything;
   std::optional<Rigid3d> aligned;
   if (state_.aligned.has_value()) {
     aligned = *state_.aligned * state_.cur_from_ref;
   }
+  const auto from = [&](const Rigid3d& cur_from_ref) {
+    TrackingGuess guess = GuessOf(cur_from_ref);
+    guess.velocity = velocity;
+    guess.leaves_refinement = !tries_everything;
+    return guess;
+  };
+  if (prediction.has_value()) {
+    TrackingGuess guess = from(prediction->cur_from_ref);
+    if (prediction->given != nullptr) {
+      guess.covariance = &prediction->covariance;
+    }
+    guess.search_at = aligned;
+    if (attempts_.Try(frame, reference, guess, result)) return true;
+  }
+  TrackingGuess first = from(state_.cur_from_ref);
+  TrackingGuess second = from(Expected() * state_.cur_from_ref);
+  // What a gyroscope has measured is no assumption.
+  if (state_.turn.has_value()) std::swap(first, second);
+  if (!tries_everything) {
+    first.search_at = aligned;
+    first.is_tentative = state_.effort == Effort::kQuick;
+    return attempts_.Try(frame, reference, first, result) &&
+           !attempts_.kept().is_partial;
+  }
+  return attempts_.TryInTurn(
+      frame, reference, first, second,
+      [&](Rigid3d* cur_from_ref) {
+        const StageTimer timer(&result->relocalise_ms);
+        return relocaliser_.FindIn(frame, state_.reference, cur_from_ref);
+      },
+      result);
+}
+
+std::optional<Twist> Odometry::TwistSinceLast(
+    const std::optional<Prediction>& prediction) const {
+  if (!(state_.interval > 0.0)) return std::nullopt;
+  if (prediction.has_value()) {
+    return TwistOf(prediction->cur_from_prev, state_.interval);
+  }
+  if (!state_.aligned.has_value() ||
+      state_.shutter_tracking.velocity().last().has_value()) {
+    return std::nullopt;
+  }
+  return TwistOf(*state_.aligned, state_.interval);
+}
+
+const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
+                                    const std::optional<Prediction>& prediction,
+                                    TrackedFrame* result) {
   const auto track = [&](const PreparedFrame& frame,
                          const VelocityPrior* velocity) {
-    const auto from = [&](const Rigid3d& cur_from_ref) {
-      TrackingGuess guess = GuessOf(cur_from_ref);
-      guess.velocity = velocity;
-      guess.leaves_refinement = state_.effort != Effort::kEverything;
-      return guess;
-    };
-    if (prediction.has_value()) {
-      TrackingGuess guess = from(prediction->cur_from_ref);
-      if (prediction->given != nullptr) {
-        guess.covariance = &prediction->covariance;
-      }
-      guess.search_at = aligned;
-      if (attempts_.Try(frame, *state_.reference, guess, result)) return true;
-    }
-    TrackingGuess start = from(first);
-    if (state_.effort != Effort::kEverything) {
-      start.search_at = aligned;
-      start.is_tentative = state_.effort == Effort::kQuick;
-      return attempts_.Try(frame, *state_.reference, start, result) &&
-             !attempts_.kept().is_partial;
-    }
-    const TrackingGuess other = from(second);
-    return attempts_.TryInTurn(
-        frame, *state_.reference, start, other,
-        [&](Rigid3d* cur_from_ref) {
-          const StageTimer timer(&result->relocalise_ms);
-          return relocaliser_.FindIn(frame, state_.reference, cur_from_ref);
-        },
-        result);
+    return Try(frame, prediction, velocity, result);
   };
   if (!state_.has_shutter) {
     // A frame without a shutter among frames with one does not determine a
@@ -159,22 +178,13 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     guess.leaves_refinement = true;
     return attempts_.TryAgain(frame, *state_.reference, guess, result);
   };
-  std::optional<Twist> twist;
-  if (state_.interval > 0.0) {
-    if (prediction.has_value()) {
-      twist = TwistOf(prediction->cur_from_prev, state_.interval);
-    } else if (state_.aligned.has_value() &&
-               !state_.shutter_tracking.velocity()->last().has_value()) {
-      twist = TwistOf(*state_.aligned, state_.interval);
-    }
-  }
   std::optional<MeasuredTwist> velocity;
   if (inertial_.has_value()) velocity = inertial_->TwistDuring(measured);
   std::optional<Rigid3d> prev_from_ref;
   if (!state_.is_lost) prev_from_ref = state_.cur_from_ref;
   return state_.shutter_tracking.Follow(
-      measured, state_.interval, prev_from_ref, twist, velocity,
-      state_.reference, attempts_.kept(), track, track_again);
+      measured, state_.interval, prev_from_ref, TwistSinceLast(prediction),
+      velocity, state_.reference, attempts_.kept(), track, track_again);
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {

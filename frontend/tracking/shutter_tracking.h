@@ -84,7 +84,7 @@ class ShutterTracking {
   }
 
   // The velocity, for frames that are tracked without Follow.
-  VelocityModel* velocity() { return &velocity_; }
+  const VelocityModel& velocity() const { return velocity_; }
 
   // Registers a new reference, made of the last frame that was tracked. Sets
   // its velocity_covariance.

@@ -7,9 +7,20 @@
 #include <cmath>
 #include <memory>
 
+#include "core/factors/common_direction.h"
 #include "core/factors/factor.h"
 #include "core/factors/pose_manifold.h"
-#include "costs/factors/factor_list.h"
+#include "core/factors/relative_pose.h"
+#include "costs/factors/absolute_pose.h"
+#include "costs/factors/absolute_position.h"
+#include "costs/factors/constant_velocity.h"
+#include "costs/factors/distance.h"
+#include "costs/factors/gravity.h"
+#include "costs/factors/gyroscope.h"
+#include "costs/factors/inertial.h"
+#include "costs/factors/landmark.h"
+#include "costs/factors/map_plane.h"
+#include "costs/factors/relative_rotation.h"
 
 namespace rgbd_pose {
 namespace {
