@@ -15,7 +15,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "Libraries, headers and files for find_package(rgbd_pose) and pkg-config:
 costs, M-estimators, frontends and odometry, each a named, swappable piece.")
-set(dependencies libceres-dev libeigen3-dev libopencv-dev libyaml-cpp-dev)
+set(dependencies libceres-dev libeigen3-dev libopencv-dev libyaml-cpp-dev
+                 libturbojpeg0-dev libspng-dev)
 if(ChunkCodecs_FOUND)
   list(APPEND dependencies libzstd-dev liblz4-dev libbz2-dev)
 endif()

@@ -1,7 +1,6 @@
 #include "apps/export/export_format.h"
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 
 #include "core/util/format.h"
@@ -14,9 +13,6 @@ namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Colour images are large, and strong compression would take most of the time.
-const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
 
 [[noreturn]] void FailToWrite(const fs::path& path,
                               const std::error_code& error) {
@@ -89,7 +85,7 @@ ExportedViews WriteViewImages(const FinishedRun& run,
                               const fs::path& depth_folder) {
   return ReadImages(run, options, [&](const Frame& frame, int view) {
     const std::string name = ImageName(run, view);
-    WritePngFile(color_folder / name, frame.color, kQuick);
+    WritePngFile(color_folder / name, frame.color);
     if (!depth_folder.empty()) {
       WritePngFile(depth_folder / name, DepthInMillimetres(frame));
     }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "apps/export/export_format.h"
@@ -13,6 +12,7 @@
 #include "apps/shell/csv_table.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
+#include "frontend/files/jpeg_codec.h"
 
 namespace rgbd_pose {
 namespace {
@@ -135,9 +135,7 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
   std::map<double, std::string> images;  // by time
   const ExportedViews views =
       ReadImages(run, options, [&](const Frame& frame, int view) {
-        std::vector<uint8_t> jpeg;
-        cv::imencode(".jpg", frame.color, jpeg, {cv::IMWRITE_JPEG_QUALITY, 90});
-        images[run.trajectory[view].timestamp] = {jpeg.begin(), jpeg.end()};
+        images[run.trajectory[view].timestamp] = EncodeJpeg(frame.color, 90);
       });
 
   McapWriter file("", "json");

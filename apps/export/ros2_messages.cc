@@ -1,10 +1,11 @@
 #include "apps/export/ros2_messages.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "apps/export/export_format.h"
 #include "frontend/bags/cdr_writer.h"
+#include "frontend/files/jpeg_codec.h"
+#include "frontend/files/png_codec.h"
 
 namespace rgbd_pose {
 namespace {
@@ -95,13 +96,9 @@ std::string ImageMessage(double stamp, const std::string& format,
 }
 
 EncodedImages EncodeImages(const Frame& frame) {
-  std::vector<uint8_t> jpeg, png;
-  cv::imencode(".jpg", frame.color, jpeg, {cv::IMWRITE_JPEG_QUALITY, 90});
-  cv::imencode(".png", DepthInMillimetres(frame), png,
-               {cv::IMWRITE_PNG_COMPRESSION, 1});
   // The header has parameters of floating-point depth only.
-  return {{jpeg.begin(), jpeg.end()},
-          std::string(12, '\0') + std::string(png.begin(), png.end()),
+  return {EncodeJpeg(frame.color, 90),
+          std::string(12, '\0') + EncodePng(DepthInMillimetres(frame)),
           frame.timestamp + frame.depth_delay};
 }
 

@@ -1,11 +1,11 @@
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/view/view_state.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
-#include "frontend/files/image_file.h"
+#include "frontend/files/jpeg_codec.h"
+#include "frontend/files/png_codec.h"
 
 namespace rgbd_pose {
 namespace {
@@ -86,9 +86,8 @@ std::string FormatNews(const ViewNews& news) {
 }
 
 std::string FormatImages(const ViewImages& images, int index) {
-  std::vector<uchar> jpeg;
-  cv::imencode(".jpg", Narrowed(images.gray, kGrayWidth, cv::INTER_AREA), jpeg,
-               {cv::IMWRITE_JPEG_QUALITY, 75});
+  const std::string jpeg =
+      EncodeJpeg(Narrowed(images.gray, kGrayWidth, cv::INTER_AREA), 75);
   cv::Mat steps;
   const cv::Mat depth = Narrowed(images.depth, kDepthWidth, cv::INTER_NEAREST);
   depth.convertTo(steps, CV_8U, 1.0 / (images.depth_scale * kDepthStep));
@@ -97,8 +96,8 @@ std::string FormatImages(const ViewImages& images, int index) {
       "images",
       Format("{\"index\":%d,\"width\":%d,\"height\":%d,\"depth_step\":%g,",
              index, images.gray.cols, images.gray.rows, kDepthStep) +
-          "\"gray\":\"" + Base64({jpeg.begin(), jpeg.end()}) +
-          "\",\"depth\":\"" + Base64(EncodePng(steps)) + "\",\"matches\":" +
+          "\"gray\":\"" + Base64(jpeg) + "\",\"depth\":\"" +
+          Base64(EncodePng(steps)) + "\",\"matches\":" +
           List(images.moves,
                [](const cv::Vec<float, 5>& move) {
                  return Format("[%.1f,%.1f,%.1f,%.1f,%.2f]", move[0], move[1],

@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
-#include <vector>
+
+#include "frontend/files/png_codec.h"
 
 namespace rgbd_pose {
 
@@ -26,13 +27,9 @@ cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
                         cv::Mat* color = nullptr);
 cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path);
 
-// Encodes an image as a PNG file; `settings` as for cv::imwrite.
-std::string EncodePng(const cv::Mat& image,
-                      const std::vector<int>& settings = {});
-
 // Writes a PNG file completely or not at all. Throws InputError on failure.
 void WritePngFile(const std::string& path, const cv::Mat& image,
-                  const std::vector<int>& settings = {});
+                  PngPacking packing = PngPacking::kUsual);
 
 // The grey level of a colour: 0.299 R + 0.587 G + 0.114 B, rounded. OpenCV's
 // cvtColor gives the same values, so the source of an image does not matter.

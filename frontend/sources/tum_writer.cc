@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -43,9 +42,7 @@ std::string ImagePath(const std::string& kind, double timestamp) {
 
 void WritePng(const fs::path& path, const cv::Mat& image) {
   // Sensor noise contains no repetitions worth a search.
-  WritePngFile(path.string(), image,
-               {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
-                cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY});
+  WritePngFile(path.string(), image, PngPacking::kQuick);
 }
 
 // Changes the colours to have the frame's grey levels when they are read back:

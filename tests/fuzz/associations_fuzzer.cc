@@ -1,7 +1,6 @@
 // Files that associate colour and depth images.
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "frontend/files/png_codec.h"
 #include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 
@@ -9,11 +8,9 @@ namespace {
 
 // Writes the images that the input may name: `a` is colour and `b` depth.
 void WriteImages(const rgbd_pose::FuzzFolder& folder) {
-  std::vector<uint8_t> bytes;
   for (const int type : {CV_8UC1, CV_16UC1}) {
-    cv::imencode(".png", cv::Mat(2, 2, type, cv::Scalar(7)), bytes);
     folder.Write(type == CV_8UC1 ? "a" : "b",
-                 rgbd_pose::FuzzText(bytes.data(), bytes.size()));
+                 rgbd_pose::EncodePng(cv::Mat(2, 2, type, cv::Scalar(7))));
   }
 }
 

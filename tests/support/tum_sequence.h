@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
+#include "core/util/text_file.h"
+#include "frontend/files/image_file.h"
+#include "frontend/files/jpeg_codec.h"
 #include "frontend/sources/open_source.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
@@ -34,7 +36,11 @@ inline cv::Mat DepthImage(int k) {
 }
 
 inline void WriteImage(const std::string& path, const cv::Mat& image) {
-  ASSERT_TRUE(cv::imwrite(path, image)) << path;
+  if (std::filesystem::path(path).extension() == ".jpg") {
+    WriteFileAtomically(path, EncodeJpeg(image, 95));
+  } else {
+    WritePngFile(path, image);
+  }
 }
 
 // A folder with three frames; colour image 2 (1.07 s) has no depth image.

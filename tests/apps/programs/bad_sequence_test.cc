@@ -1,8 +1,7 @@
 // Damaged sequences as input of rgbd_odometry.
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "core/util/text_file.h"
+#include "frontend/files/image_file.h"
 #include "tests/support/bad_input.h"
 
 namespace rgbd_pose {
@@ -18,8 +17,8 @@ constexpr int kHeight = 240;
 // Replaces an image of the sequence.
 auto Image(const std::string& name, int type, int width = kWidth) {
   return [=](const Seq& seq) {
-    cv::imwrite(seq / name,
-                cv::Mat(kHeight, width, type, cv::Scalar(90, 90, 90)));
+    WritePngFile(seq / name,
+                 cv::Mat(kHeight, width, type, cv::Scalar(90, 90, 90)));
   };
 }
 
@@ -139,11 +138,11 @@ TEST_F(BadInputTest, Images) {
            [](const Seq& s) {
              for (const char* time : {"00000", "33333", "66667"}) {
                Image("depth/1000.0" + std::string(time) + ".png", CV_16UC1)(s);
-               cv::imwrite(s / ("depth/1000.0" + std::string(time) + ".png"),
-                           cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(0)));
+               WritePngFile(s / ("depth/1000.0" + std::string(time) + ".png"),
+                            cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(0)));
              }
-             cv::imwrite(s / "depth/1000.100000.png",
-                         cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(0)));
+             WritePngFile(s / "depth/1000.100000.png",
+                          cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(0)));
            },
            "", 3, "only 0.0 % of the frames were tracked"},
       });

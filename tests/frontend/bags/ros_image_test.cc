@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 
+#include "frontend/files/jpeg_codec.h"
+#include "frontend/files/png_codec.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
 namespace rgbd_pose {
@@ -92,8 +93,9 @@ TEST_F(Ros1BagTest, ReadsCompressedImages) {
     Open();
     WriteInfo();
     for (int k = 0; k < kFrames; ++k) {
-      std::vector<uchar> bytes;
-      cv::imencode(k % 2 == 0 ? ".jpg" : ".png", ColorImage(k), bytes);
+      const std::string file =
+          k % 2 == 0 ? EncodeJpeg(ColorImage(k), 95) : EncodePng(ColorImage(k));
+      const std::vector<uchar> bytes(file.begin(), file.end());
       Write(std::string(kColor) + "/compressed", StampOf(k),
             MakeCompressed("bgr8; jpeg compressed bgr8", bytes, StampOf(k)));
       // compressed_depth_image_transport writes depth as A / z + B.
@@ -105,8 +107,7 @@ TEST_F(Ros1BagTest, ReadsCompressedImages) {
           if (raw > 0) raw = std::lround(a / (raw * 0.001F) + b);
         });
       }
-      std::vector<uchar> png;
-      cv::imencode(".png", depth, png);
+      const std::string png = EncodePng(depth);
       std::vector<uchar> message(12);
       std::memcpy(&message[4], &a, 4);
       std::memcpy(&message[8], &b, 4);

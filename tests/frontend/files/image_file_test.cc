@@ -61,7 +61,7 @@ TEST_F(ImageFileTest, RefusesCutOffPng) {
   ExpectAnyCutRefused("depth.png", Noise(CV_16UC1));
 }
 
-// OpenCV itself accepts these and fills the missing part with grey.
+// Libraries accept these and fill the missing part with grey.
 TEST_F(ImageFileTest, RefusesCutOffJpeg) {
   ExpectAnyCutRefused("color.jpg", Noise(CV_8UC3));
 }
@@ -87,27 +87,21 @@ TEST_F(ImageFileTest, RefusesWhatIsNoImage) {
   ExpectRefused(folder_.Write("empty.png", ""), {"empty.png", "empty"});
   ExpectRefused(folder_.Write("text.png", "text"),
                 {"text.png", "not in a supported format"});
+  ExpectRefused(Write("color.tiff", Noise(CV_8UC3)),
+                {"color.tiff", "not in a supported format (PNG, JPEG,"});
 }
 
 TEST_F(ImageFileTest, ReadsTheKindsThatRecordingsComeIn) {
   const cv::Mat color = Noise(CV_8UC3);
-  for (const char* name :
-       {"a.png", "a.jpg", "a.tiff", "a.bmp", "a.ppm", "a.webp"}) {
+  for (const char* name : {"a.png", "a.jpg", "a.ppm"}) {
     const cv::Mat image = ReadImageFile(Write(name, color));
     EXPECT_EQ(image.size(), color.size()) << name;
   }
   const cv::Mat depth = Noise(CV_16UC1);
-  for (const char* name : {"a.png", "a.tiff", "a.pgm"}) {
+  for (const char* name : {"a.png", "a.pgm"}) {
     const cv::Mat image = ReadDepthImageFile(Write(name, depth));
     EXPECT_EQ(cv::norm(image, depth, cv::NORM_INF), 0) << name;
   }
-}
-
-// One of OpenCV's decoders would terminate the program for this file.
-TEST_F(ImageFileTest, WhatLooksLikeDicomIsRefused) {
-  const std::string bytes = std::string(128, '\x42') + "DICMB`\x82";
-  ExpectRefused(folder_.Write("a.png", bytes),
-                {"a.png", "not in a supported format"});
 }
 
 TEST_F(ImageFileTest, DepthMustHaveSixteenBitsAndOneChannel) {
