@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 
 #include "apps/export/export_format.h"
 #include "apps/report/report_page.h"
@@ -58,7 +59,38 @@ std::string WriteFound(const RecordingCalibration& found,
                              : "tracked with the first camera:\n");
 }
 
-void WriteMapTables(const SequenceRun& run, const RunFolder& output) {
+// Throws InputError for outputs that the run could not write at its end.
+void RequirePossible(const RunOutputSettings& output,
+                     const std::string& dataset) {
+  const std::string& mesh = output.save_mesh;
+  if (!(output.save_cloud + mesh).empty() &&
+      !std::filesystem::exists(dataset)) {
+    throw InputError(
+        std::string(mesh.empty() ? "--save_cloud" : "--save_mesh") +
+        " needs the frames a second time, but '" + dataset +
+        "' is not a file or folder; record it with rgbd_convert first");
+  }
+  RequireOutside("output", output.output, dataset);
+  if (!output.record.empty()) RequireOutside("record", output.record, dataset);
+}
+
+// What metrics.json has besides the metrics of every run.
+nlohmann::json MoreMetrics(const std::string& stopped,
+                           const std::optional<RecordingCalibration>& found,
+                           const SequenceRun& run) {
+  nlohmann::json more = {{"stopped", stopped}};
+  if (found.has_value()) more["calibration"] = CalibrationToJson(found->result);
+  if (run.slam() != nullptr) {
+    more["slam"] = SlamToJson(*run.slam(), run.slam_frames());
+  }
+  return more;
+}
+
+// Returns the text to print. `summary`: see SlamToJson.
+std::string WriteMapTables(const SequenceRun& run,
+                           const nlohmann::json& summary,
+                           const RunFolder& output) {
+  Warn({SlamWarning(summary)});
   const Slam& slam = *run.slam();
   output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
   output.WriteFile("trajectory_online.txt",
@@ -68,6 +100,48 @@ void WriteMapTables(const SequenceRun& run, const RunFolder& output) {
   output.WriteFile("keyframes.csv",
                    FormatKeyframesCsv(slam.Map(), slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
+  return FormatSlamSummary(summary);
+}
+
+// Returns the text that `write` returns. If it cannot write, the other results
+// stay: adds why to `missing` and returns no text.
+std::string TextOf(const std::function<std::string()>& write,
+                   std::string* missing) {
+  try {
+    return write();
+  } catch (const InputError& error) {
+    *missing += (missing->empty() ? "" : "; ") + std::string(error.what());
+    return "";
+  }
+}
+
+// Writes the page from the files of the run, which are not yet published to
+// `folder`. Returns the text to print.
+std::string WritePage(const RunFolder& output, const std::string& folder) {
+  const bool has_page = HasReportLibrary();
+  if (has_page) WriteReport("run", output.staging_dir());
+  return "report in   " +
+         (has_page ? folder + "/report.html" : kNoReportLibrary) + "\n";
+}
+
+// Writes the cloud and the mesh of a published run, as far as requested.
+// Returns the text to print. `missing`: see TextOf.
+std::string FuseFrames(const RunOutputSettings& output, int threads,
+                       std::string* missing) {
+  ExportOptions options;
+  options.voxel = output.voxel;
+  options.threads = threads;
+  std::string text;
+  for (const auto& [file, fuse] : {std::pair(output.save_cloud, &ExportCloud),
+                                   std::pair(output.save_mesh, &ExportMesh)}) {
+    if (file.empty()) continue;
+    options.output = file;
+    const auto write = [&, fuse = fuse] {
+      return fuse(FinishedRun(output.output), options);
+    };
+    text += TextOf(write, missing);
+  }
+  return text;
 }
 
 // Returns the exit code and prints one line on stderr unless it is kExitOk.
@@ -133,23 +207,15 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   const int threads = NumThreads(FLAGS_threads);
   const std::string& dataset = settings.sequence.dataset;
   const std::string& folder = settings.output.output;
-  const std::string& cloud = settings.output.save_cloud;
-  const std::string& mesh = settings.output.save_mesh;
-  const std::string& record = settings.output.record;
-  if (!(cloud + mesh).empty() && !std::filesystem::exists(dataset)) {
-    throw InputError(
-        std::string(mesh.empty() ? "--save_cloud" : "--save_mesh") +
-        " needs the frames a second time, but '" + dataset +
-        "' is not a file or folder; record it with rgbd_convert first");
-  }
-  RequireOutside("output", folder, dataset);
-  if (!record.empty()) RequireOutside("record", record, dataset);
+  RequirePossible(settings.output, dataset);
   FrameSource& source = *sequence->source;
   RunOutput output(settings.output, source, settings.odometry);
   const size_t known_frames = source.timestamps().size();
   if (known_frames > 0) output.WarnOfMissingImages(known_frames);
   std::optional<Ros2Recording> recording;
-  if (!record.empty()) recording.emplace(record, source);
+  if (!settings.output.record.empty()) {
+    recording.emplace(settings.output.record, source);
+  }
   LiveView view(dataset, settings.view, source.camera().camera, *run);
   if (view.is_open()) {
     std::fprintf(stderr, "view on     %s\n", view.address().c_str());
@@ -160,64 +226,36 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   const double seconds = SecondsSince(start);
   if (known_frames == 0) output.WarnOfMissingImages(run->frames().size());
 
-  // If something cannot be written, the other results stay.
-  std::string missing;
-  std::string text;
-  const auto attempt = [&](const auto& write) {
-    try {
-      text += write();
-    } catch (const InputError& error) {
-      missing += (missing.empty() ? "" : "; ") + std::string(error.what());
-    }
-  };
-  // This comes first, because a live camera repeats nothing.
+  std::string text, missing;
   std::string recorded;
+  // This comes first, because a live camera repeats nothing.
   if (recording.has_value()) {
-    attempt([&] {
-      recorded = recording->Finish();
-      return "";
-    });
+    recorded = TextOf([&] { return recording->Finish(); }, &missing);
   }
-
   const Trajectory* const truth = sequence->GroundTruth();
   const RunResults results = run->Finish(truth);
-  nlohmann::json more = {{"stopped", stopped}};
-  if (found.has_value()) {
-    text += WriteFound(*found, settings, output.folder());
-    more["calibration"] = CalibrationToJson(found->result);
-  }
-  const Slam* const slam = run->slam();
-  if (slam != nullptr) more["slam"] = SlamToJson(*slam, run->slam_frames());
+  const nlohmann::json more = MoreMetrics(stopped, found, *run);
+  if (found.has_value()) text += WriteFound(*found, settings, output.folder());
   text += output.Write(results, threads, seconds, truth, dataset, info, more);
+  const Slam* const slam = run->slam();
   if (slam != nullptr) {
-    Warn({SlamWarning(more["slam"])});
-    text += FormatSlamSummary(more["slam"]);
-    WriteMapTables(*run, output.folder());
+    text += WriteMapTables(*run, more["slam"], output.folder());
   }
   text += recorded;
   if (FLAGS_report) {
-    attempt([&] {
-      const bool has_page = HasReportLibrary();
-      if (has_page) WriteReport("run", output.folder().staging_dir());
-      return "report in   " +
-             (has_page ? folder + "/report.html" : kNoReportLibrary) + "\n";
-    });
+    text +=
+        TextOf([&] { return WritePage(output.folder(), folder); }, &missing);
   }
   output.folder().Publish();
   if (!settings.save_map.empty()) {
-    attempt([&] {
+    const auto save = [&] {
       SaveMap(settings.save_map, slam->Map());
       return "map in      " + settings.save_map + "\n";
-    });
+    };
+    text += TextOf(save, &missing);
   }
-  ExportOptions options;
-  options.voxel = settings.output.voxel;
-  options.threads = threads;
-  for (const auto& [file, fuse] :
-       {std::pair(cloud, &ExportCloud), std::pair(mesh, &ExportMesh)}) {
-    if (file.empty() || results.trajectory.empty()) continue;
-    options.output = file;
-    attempt([&, fuse = fuse] { return fuse(FinishedRun(folder), options); });
+  if (!results.trajectory.empty()) {
+    text += FuseFrames(settings.output, threads, &missing);
   }
   std::printf("%sresults in  %s\n", text.c_str(), folder.c_str());
   view.Finish(folder);
