@@ -33,6 +33,45 @@ nlohmann::json ShutterToJson(const RgbdCamera& camera) {
           {"depth", both(camera.depth_shutter)}};
 }
 
+// Of the stamps of depth images relative to colour, and of their scatter.
+nlohmann::json DepthStampsToJson(const std::vector<double>& stamps_ms,
+                                 const std::vector<double>& jitters_ms) {
+  if (stamps_ms.empty()) return {};
+  return {{"least", Quantile(stamps_ms, 0.0)},
+          {"median", Median(stamps_ms)},
+          {"most", Quantile(stamps_ms, 1.0)},
+          {"jitter", Median(jitters_ms)}};
+}
+
+nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {
+  return {{"matches", residuals.matches},
+          {"norm_bin", residuals.kNormBin},
+          {"norm_counts", residuals.norms},
+          {"norms_above", residuals.norms_above},
+          {"weight_bin", residuals.kWeightBin},
+          {"weight_counts", residuals.weights},
+          {"weights_zero", residuals.weights_zero},
+          {"degrees_counts", residuals.degrees}};
+}
+
+// Warns of what the errors of a run suggest about its input.
+void WarnOfInput(const RunResults& results,
+                 const std::vector<double>& jitters_ms) {
+  const double jitter_ms = jitters_ms.empty() ? 0.0 : Median(jitters_ms);
+  if (jitter_ms > kNoticedJitterMs) {
+    Warn(
+        {Format("the stamps of depth images scatter by %.1f ms against those "
+                "of colour; covariances allow for it",
+                jitter_ms)});
+  }
+  if (!results.no_evaluation.empty()) {
+    Warn({"no evaluation: " + results.no_evaluation});
+  }
+  if (results.evaluation.has_value()) {
+    Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
+  }
+}
+
 void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                      const TrackedFrame& tracked, const Camera& camera,
                      const Odometry& odometry) {
@@ -143,38 +182,23 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   const nlohmann::json summary = Summarise(results.frames, threads, seconds);
   const nlohmann::json jumps = FindJumps(results.frames);
   std::string text = FormatSummary(summary) + FormatJumps(jumps);
-  nlohmann::json depth_stamp_ms;
-  if (!depth_stamps_ms_.empty()) {
-    depth_stamp_ms = {{"least", Quantile(depth_stamps_ms_, 0.0)},
-                      {"median", Median(depth_stamps_ms_)},
-                      {"most", Quantile(depth_stamps_ms_, 1.0)},
-                      {"jitter", Median(jitters_ms_)}};
-  }
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);  // ru_maxrss is in KiB
-  const ResidualHistogram& residuals = results.residuals;
-  nlohmann::json metrics = {{"program", info.name},
-                            {"dataset", dataset},
-                            {"unmatched_color", source_.unmatched_color()},
-                            {"dropped_frames", source_.dropped()},
-                            {"damaged_frames", results.damaged.size()},
-                            {"repeated_color", results.repeated.color},
-                            {"repeated_depth", results.repeated.depth},
-                            {"remarks", source_.remarks()},
-                            {"peak_rss_mb", usage.ru_maxrss * 1024 / 1e6},
-                            {"run", summary},
-                            {"jumps", jumps},
-                            {"shutter", ShutterToJson(source_.camera())},
-                            {"depth_stamp_ms", depth_stamp_ms},
-                            {"residuals",
-                             {{"matches", residuals.matches},
-                              {"norm_bin", residuals.kNormBin},
-                              {"norm_counts", residuals.norms},
-                              {"norms_above", residuals.norms_above},
-                              {"weight_bin", residuals.kWeightBin},
-                              {"weight_counts", residuals.weights},
-                              {"weights_zero", residuals.weights_zero},
-                              {"degrees_counts", residuals.degrees}}}};
+  nlohmann::json metrics = {
+      {"program", info.name},
+      {"dataset", dataset},
+      {"unmatched_color", source_.unmatched_color()},
+      {"dropped_frames", source_.dropped()},
+      {"damaged_frames", results.damaged.size()},
+      {"repeated_color", results.repeated.color},
+      {"repeated_depth", results.repeated.depth},
+      {"remarks", source_.remarks()},
+      {"peak_rss_mb", usage.ru_maxrss * 1024 / 1e6},
+      {"run", summary},
+      {"jumps", jumps},
+      {"shutter", ShutterToJson(source_.camera())},
+      {"depth_stamp_ms", DepthStampsToJson(depth_stamps_ms_, jitters_ms_)},
+      {"residuals", ResidualsToJson(results.residuals)}};
   metrics.update(more);
   if (results.gravity.has_value()) {
     metrics["gravity"] = GravityToJson(*results.gravity);
@@ -184,18 +208,8 @@ std::string RunOutput::Write(const RunResults& results, int threads,
     metrics["gyroscope"] = GyroscopeToJson(*results.imu);
     text += FormatGyroscope(metrics["gyroscope"]);
   }
-  const double jitter_ms = jitters_ms_.empty() ? 0.0 : Median(jitters_ms_);
-  if (jitter_ms > kNoticedJitterMs) {
-    Warn(
-        {Format("the stamps of depth images scatter by %.1f ms against those "
-                "of colour; covariances allow for it",
-                jitter_ms)});
-  }
-  if (!results.no_evaluation.empty()) {
-    Warn({"no evaluation: " + results.no_evaluation});
-  }
+  WarnOfInput(results, jitters_ms_);
   if (results.evaluation.has_value()) {
-    Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
     text += FormatEvaluationSummary(*results.evaluation) +
             "all errors  in the report and in " +
             (folder_.staging_dir().parent_path() / "metrics.json").string() +
