@@ -9,6 +9,107 @@
 #include "frontend/calibration/calibration_verdict.h"
 
 namespace rgbd_pose {
+namespace {
+
+// The parameters that were found as a table, and the names of the others.
+std::string FormatParameters(const CalibrationResult& result) {
+  std::string text =
+      Format("%-22s %12s %12s %10s  %s\n", "", "before", "found", "+-", "");
+  std::vector<std::string> undetermined;
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    const CalibrationParameter& row = kCalibrationParameters[k];
+    const CalibratedParameter& parameter = result.parameters[k];
+    if (parameter.status == CalibratedParameter::Status::kFixed) continue;
+    if (parameter.status == CalibratedParameter::Status::kUndetermined) {
+      undetermined.emplace_back(row.name);
+      continue;
+    }
+    text +=
+        Format("%-22s %12s %12s %10s  %s\n", row.name,
+               ShortNumber(parameter.before).c_str(),
+               NumberTo(parameter.found, parameter.sigma).c_str(),
+               NumberTo(parameter.sigma, parameter.sigma).c_str(), row.unit);
+  }
+  if (undetermined.empty()) return text;
+  return text + Join(undetermined) +
+         " are unchanged: the recording does not determine them, or held-out "
+         "pairs fit no better with other values\n";
+}
+
+// How well the cameras fit the pairs that took no part in the calibration.
+std::string FormatHeldOut(const CalibrationResult& result) {
+  return Format(
+             "%d held-out pairs: cost per view %.4g -> %.4g (%.1f standard "
+             "deviations); spread of residuals %.3g -> %.3g px\n",
+             result.held_out_pairs, result.cost_before, result.cost_after,
+             result.gain_sigmas, 0.5 * result.pixel_before,
+             0.5 * result.pixel_after) +
+         WhatIsLeft(result) + "\n" + HalvesInWords(result) + "\n" +
+         UnseenInWords(result) + "\n" +
+         Format(
+             "features scatter by %.3g times what the frontend states "
+             "(--feature_noise)\n",
+             result.pixel_after);
+}
+
+std::string FormatDepthNoise(const DepthNoiseFit& noise) {
+  std::string text = Format(
+      "depth noise: sigma(z) = %.3g m + %.4g z^2 / m (+- %.2g, %.2g; %d "
+      "depths), %.3g times what was assumed\n",
+      noise.model.constant, noise.model.quadratic, noise.constant_sigma,
+      noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
+  if (!noise.IsPlausible()) {
+    text +=
+        "this is too large for sensor noise: depth is displaced; do not use "
+        "depth_noise.yaml\n";
+  }
+  return text;
+}
+
+nlohmann::json ParametersToJson(const CalibrationResult& result) {
+  nlohmann::json all = nlohmann::json::array();
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    const CalibrationParameter& row = kCalibrationParameters[k];
+    const CalibratedParameter& parameter = result.parameters[k];
+    all.push_back({{"name", row.name},
+                   {"what", row.what},
+                   {"unit", row.unit},
+                   {"status", ToString(parameter.status)},
+                   {"before", parameter.before},
+                   {"prior_sigma", parameter.prior},
+                   {"found", parameter.found},
+                   {"sigma", parameter.sigma}});
+  }
+  return all;
+}
+
+nlohmann::json HalvesToJson(const std::vector<HalvesOfParameter>& halves) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const HalvesOfParameter& half : halves) {
+    all.push_back({{"name", kCalibrationParameters[half.part].name},
+                   {"first", half.first},
+                   {"second", half.second},
+                   {"sigma", half.sigma}});
+  }
+  return all;
+}
+
+nlohmann::json DepthNoiseToJson(const DepthNoiseFit& fit) {
+  nlohmann::json scatter = nlohmann::json::array();
+  for (const DepthScatter& at : fit.scatter) {
+    scatter.push_back({at.depth, at.sigma});
+  }
+  return {{"constant", fit.model.constant},
+          {"constant_sigma", fit.constant_sigma},
+          {"quadratic", fit.model.quadratic},
+          {"quadratic_sigma", fit.quadratic_sigma},
+          {"depths", fit.samples},
+          {"in_old_sigmas", fit.in_old_sigmas},
+          {"mean_share", fit.model.mean_share},
+          {"depth_and_sigma", scatter}};
+}
+
+}  // namespace
 
 const char* ToString(CalibratedParameter::Status status) {
   using Status = CalibratedParameter::Status;
@@ -50,59 +151,14 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
                           result.passes, result.displacement_px)
                        .c_str()
                  : "");
-  text += Format("%-22s %12s %12s %10s  %s\n", "", "before", "found", "+-", "");
-  std::vector<std::string> undetermined;
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    const CalibrationParameter& row = kCalibrationParameters[k];
-    const CalibratedParameter& parameter = result.parameters[k];
-    if (parameter.status == CalibratedParameter::Status::kFixed) continue;
-    if (parameter.status == CalibratedParameter::Status::kUndetermined) {
-      undetermined.emplace_back(row.name);
-      continue;
-    }
-    text +=
-        Format("%-22s %12s %12s %10s  %s\n", row.name,
-               ShortNumber(parameter.before).c_str(),
-               NumberTo(parameter.found, parameter.sigma).c_str(),
-               NumberTo(parameter.sigma, parameter.sigma).c_str(), row.unit);
-  }
-  if (!undetermined.empty()) {
-    text += Join(undetermined) +
-            " are unchanged: the recording does not determine them, or "
-            "held-out pairs fit no better with other values\n";
-  }
+  text += FormatParameters(result);
   text += result.scale_from.empty()
               ? "depth_factor is unchanged: images do not contain the depth "
                 "scale; give a known length, ground truth or motion guess to "
                 "estimate it\n"
               : "depth scale estimated from " + result.scale_from + "\n";
-  if (result.held_out_pairs > 0) {
-    text += Format(
-        "%d held-out pairs: cost per view %.4g -> %.4g (%.1f standard "
-        "deviations); spread of residuals %.3g -> %.3g px\n",
-        result.held_out_pairs, result.cost_before, result.cost_after,
-        result.gain_sigmas, 0.5 * result.pixel_before,
-        0.5 * result.pixel_after);
-    text += WhatIsLeft(result) + "\n" + HalvesInWords(result) + "\n";
-    text += UnseenInWords(result) + "\n";
-    text += Format(
-        "features scatter by %.3g times what the frontend states "
-        "(--feature_noise)\n",
-        result.pixel_after);
-  }
-  if (result.noise.has_value()) {
-    const DepthNoiseFit& noise = *result.noise;
-    text += Format(
-        "depth noise: sigma(z) = %.3g m + %.4g z^2 / m (+- %.2g, %.2g; %d "
-        "depths), %.3g times what was assumed\n",
-        noise.model.constant, noise.model.quadratic, noise.constant_sigma,
-        noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
-    if (!noise.IsPlausible()) {
-      text +=
-          "this is too large for sensor noise: depth is displaced; do not use "
-          "depth_noise.yaml\n";
-    }
-  }
+  if (result.held_out_pairs > 0) text += FormatHeldOut(result);
+  if (result.noise.has_value()) text += FormatDepthNoise(*result.noise);
   text += result.is_accepted
               ? "the new camera is better: use camera.yaml\n"
               : "the first camera is kept: " + result.reason + "\n";
@@ -110,45 +166,11 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
 }
 
 nlohmann::json CalibrationToJson(const CalibrationResult& result) {
-  nlohmann::json parameters = nlohmann::json::array();
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    const CalibrationParameter& row = kCalibrationParameters[k];
-    const CalibratedParameter& parameter = result.parameters[k];
-    parameters.push_back({{"name", row.name},
-                          {"what", row.what},
-                          {"unit", row.unit},
-                          {"status", ToString(parameter.status)},
-                          {"before", parameter.before},
-                          {"prior_sigma", parameter.prior},
-                          {"found", parameter.found},
-                          {"sigma", parameter.sigma}});
-  }
-  nlohmann::json halves = nlohmann::json::array();
-  for (const HalvesOfParameter& half : result.halves) {
-    halves.push_back({{"name", kCalibrationParameters[half.part].name},
-                      {"first", half.first},
-                      {"second", half.second},
-                      {"sigma", half.sigma}});
-  }
   nlohmann::json noise;
-  if (result.noise.has_value()) {
-    const DepthNoiseFit& fit = *result.noise;
-    nlohmann::json scatter = nlohmann::json::array();
-    for (const DepthScatter& at : fit.scatter) {
-      scatter.push_back({at.depth, at.sigma});
-    }
-    noise = {{"constant", fit.model.constant},
-             {"constant_sigma", fit.constant_sigma},
-             {"quadratic", fit.model.quadratic},
-             {"quadratic_sigma", fit.quadratic_sigma},
-             {"depths", fit.samples},
-             {"in_old_sigmas", fit.in_old_sigmas},
-             {"mean_share", fit.model.mean_share},
-             {"depth_and_sigma", scatter}};
-  }
+  if (result.noise.has_value()) noise = DepthNoiseToJson(*result.noise);
   return {{"accepted", result.is_accepted},
           {"reason", result.reason},
-          {"parameters", parameters},
+          {"parameters", ParametersToJson(result)},
           {"scale_from", result.scale_from},
           {"keyframes", result.keyframes},
           {"pairs", result.pairs},
@@ -168,7 +190,7 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
           {"depth_spread_before", result.depth_before},
           {"depth_spread_after", result.depth_after},
           {"depth_noise", noise},
-          {"halves", halves},
+          {"halves", HalvesToJson(result.halves)},
           {"halves_spread", result.halves_spread},
           {"displacement_px", result.displacement_px},
           {"passes", result.passes}};
