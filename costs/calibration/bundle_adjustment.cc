@@ -43,6 +43,124 @@ class IterationReport : public ceres::IterationCallback {
   std::exception_ptr thrown_;
 };
 
+// The problem that Ceres solves: depths are those of the state, all other
+// unknowns are relative to it.
+class AdjustmentProblem {
+ public:
+  // `views` and `state` must outlive the problem. `y`: see CalibrationOrigin.
+  AdjustmentProblem(const CalibrationViews& views,
+                    const CalibrationOrigin& origin, const CalibrationVector& y,
+                    CalibrationState* state)
+      : views_(views),
+        origin_(origin),
+        state_(*state),
+        x_(state->world_from_cam.size(), MotionVector::Zero()),
+        y_(y),
+        loss_(kLandmarkLossWidth),
+        problem_(Ownership()) {
+    for (const Rigid3d& pose : state_.world_from_cam) {
+      origins_.emplace_back(pose.Inverse());
+    }
+    data_.reserve(views_.landmarks.size() + views_.views.size());
+  }
+
+  void AddLandmarks(bool training_only) {
+    for (size_t i = 0; i < views_.landmarks.size(); ++i) {
+      const Landmark& landmark = views_.landmarks[i];
+      // Adds a residual of the measurements appended last.
+      const auto add = [&](auto residual, int keyframe) {
+        problem_.AddResidualBlock(
+            new LandmarkBlock<decltype(residual)>(origins_[landmark.anchor],
+                                                  origins_[keyframe], origin_,
+                                                  data_.back()),
+            &loss_, x_[landmark.anchor].data(), x_[keyframe].data(),
+            &state_.inverse_depths[i], y_.data());
+      };
+      data_.push_back(DataOf(views_, landmark, state_));
+      bool is_used = false;
+      for (int k = 0; k < landmark.num_views; ++k) {
+        const LandmarkView& view = views_.views[landmark.first_view + k];
+        if (!view.TakesPart(training_only)) continue;
+        // The view's pose is a dummy: an anchor's depth does not depend on it.
+        if (!is_used) add(AnchorDepth(), view.keyframe);
+        is_used = true;
+        data_.push_back(DataOf(views_, landmark, view, state_));
+        add(LandmarkPixel(), view.keyframe);
+        if (view.depth.inverse_sigma != 0.0) {
+          add(LandmarkDepth(), view.keyframe);
+        }
+      }
+    }
+  }
+
+  void AddDistances() {
+    for (const KnownDistance& known : views_.distances) {
+      problem_.AddResidualBlock(
+          new KnownDistanceBlock(origins_[known.a], origins_[known.b], origin_,
+                                 known),
+          nullptr, x_[known.a].data(), x_[known.b].data(), y_.data());
+    }
+  }
+
+  // y is in standard deviations of the prior, so the residual is y itself.
+  void AddPrior() {
+    problem_.AddResidualBlock(
+        new ceres::NormalPrior(CalibrationMatrix::Identity(),
+                               CalibrationVector::Zero()),
+        nullptr, y_.data());
+  }
+
+  // Fixes the first pose, and theta unless any of it is free.
+  void Fix(const FreeParts& is_free) {
+    if (problem_.HasParameterBlock(x_[0].data())) {
+      problem_.SetParameterBlockConstant(x_[0].data());
+    }
+    if (is_free.none()) problem_.SetParameterBlockConstant(y_.data());
+  }
+
+  // The order of elimination: first the depths, of which none depends on
+  // another.
+  ceres::ParameterBlockOrdering Elimination() {
+    ceres::ParameterBlockOrdering ordering;
+    const auto add = [&](double* block, int group) {
+      if (!problem_.HasParameterBlock(block)) return;
+      ordering.AddElementToGroup(block, group);
+    };
+    for (double& depth : state_.inverse_depths) add(&depth, 0);
+    for (MotionVector& pose : x_) add(pose.data(), 1);
+    add(y_.data(), 1);
+    return ordering;
+  }
+
+  ceres::Problem* problem() { return &problem_; }
+
+  // Brings the solution into the state.
+  void TakeSolution() {
+    for (size_t i = 0; i < x_.size(); ++i) {
+      state_.world_from_cam[i] =
+          origins_[i].CurFromPrev(x_[i].data()).Inverse();
+    }
+    state_.theta = origin_.At(y_.data());
+  }
+
+ private:
+  static ceres::Problem::Options Ownership() {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }
+
+  const CalibrationViews& views_;
+  const CalibrationOrigin origin_;
+  CalibrationState& state_;
+  std::vector<LinearizationPoint> origins_;  // of the poses
+  std::vector<MotionVector> x_;              // the poses, relative to these
+  CalibrationVector y_;
+  std::vector<LandmarkData> data_;  // reserved: must not move
+  ceres::CauchyLoss loss_;
+  ceres::Problem problem_;
+};
+
 }  // namespace
 
 CalibrationState BundleAdjustment::Begin(const CalibrationVector& theta) const {
@@ -102,70 +220,21 @@ void BundleAdjustment::MeasureScales(CalibrationState* state) const {
 
 double BundleAdjustment::Solve(const FreeParts& is_free,
                                CalibrationState* state) const {
-  const CalibrationOrigin origin = OriginOf(is_free, state->theta);
-  std::vector<LinearizationPoint> origins;
-  for (const Rigid3d& pose : state->world_from_cam) {
-    origins.emplace_back(pose.Inverse());
-  }
-  std::vector<MotionVector> x(origins.size(), MotionVector::Zero());
   CalibrationVector y;
   for (int k = 0; k < kCalibrationSize; ++k) {
     y[k] =
         is_free[k] ? (state->theta[k] - prior_.mean[k]) / prior_.sigma[k] : 0.0;
   }
-  const size_t num_landmarks = views_.landmarks.size();
-  std::vector<LandmarkData> data;  // reserved: must not move
-  data.reserve(num_landmarks + views_.views.size());
+  AdjustmentProblem adjustment(views_, OriginOf(is_free, state->theta), y,
+                               state);
+  adjustment.AddLandmarks(training_only_);
+  adjustment.AddDistances();
+  adjustment.AddPrior();
+  adjustment.Fix(is_free);
 
-  ceres::Problem::Options ownership;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::CauchyLoss loss(kLandmarkLossWidth);
-  ceres::Problem problem(ownership);
   ceres::Solver::Options options;
-  options.linear_solver_ordering.reset(new ceres::ParameterBlockOrdering);
-  for (size_t i = 0; i < num_landmarks; ++i) {
-    const Landmark& landmark = views_.landmarks[i];
-    double* const d = &state->inverse_depths[i];
-    // Adds a residual of the measurements appended last.
-    const auto add = [&](auto residual, int keyframe) {
-      problem.AddResidualBlock(
-          new LandmarkBlock<decltype(residual)>(
-              origins[landmark.anchor], origins[keyframe], origin, data.back()),
-          &loss, x[landmark.anchor].data(), x[keyframe].data(), d, y.data());
-    };
-    data.push_back(DataOf(views_, landmark, *state));
-    int used = 0;
-    for (int k = 0; k < landmark.num_views; ++k) {
-      const LandmarkView& view = views_.views[landmark.first_view + k];
-      if (!view.TakesPart(training_only_)) continue;
-      // The view's pose is a dummy: an anchor's depth does not depend on it.
-      if (used++ == 0) add(AnchorDepth(), view.keyframe);
-      data.push_back(DataOf(views_, landmark, view, *state));
-      add(LandmarkPixel(), view.keyframe);
-      if (view.depth.inverse_sigma != 0.0) add(LandmarkDepth(), view.keyframe);
-    }
-    if (used > 0) options.linear_solver_ordering->AddElementToGroup(d, 0);
-  }
-  for (const KnownDistance& known : views_.distances) {
-    problem.AddResidualBlock(
-        new KnownDistanceBlock(origins[known.a], origins[known.b], origin,
-                               known),
-        nullptr, x[known.a].data(), x[known.b].data(), y.data());
-  }
-  // y is in standard deviations of the prior, so the residual is y itself.
-  problem.AddResidualBlock(new ceres::NormalPrior(CalibrationMatrix::Identity(),
-                                                  CalibrationVector::Zero()),
-                           nullptr, y.data());
-  options.linear_solver_ordering->AddElementToGroup(y.data(), 1);
-  for (MotionVector& pose : x) {
-    if (!problem.HasParameterBlock(pose.data())) continue;
-    options.linear_solver_ordering->AddElementToGroup(pose.data(), 1);
-  }
-  if (problem.HasParameterBlock(x[0].data())) {
-    problem.SetParameterBlockConstant(x[0].data());
-  }
-  if (is_free.none()) problem.SetParameterBlockConstant(y.data());
-
+  options.linear_solver_ordering.reset(
+      new ceres::ParameterBlockOrdering(adjustment.Elimination()));
   options.linear_solver_type = ceres::SPARSE_SCHUR;
   options.max_num_iterations = max_iterations_;
   options.num_threads = 1;
@@ -175,15 +244,12 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   IterationReport report(on_iteration_);
   options.callbacks.push_back(&report);
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solve(options, adjustment.problem(), &summary);
   report.PassOn();
   if (!summary.IsSolutionUsable()) {
     return NAN;
   }
-  for (size_t i = 0; i < x.size(); ++i) {
-    state->world_from_cam[i] = origins[i].CurFromPrev(x[i].data()).Inverse();
-  }
-  state->theta = origin.At(y.data());
+  adjustment.TakeSolution();
   return summary.final_cost;
 }
 
