@@ -120,6 +120,83 @@ class OneLandmark {
   double hessian_d_ = 0.0, gradient_d_ = 0.0;  // of the depth
 };
 
+// A known distance among the unknowns of a ReducedCameraSystem.
+struct DistanceEquation {
+  int place_a, place_b;  // of the poses; negative: the first, a constant
+  KnownDistanceError error;
+  double factor_width;  // of the depth factor in CalibrationOrigin
+};
+
+std::vector<DistanceEquation> DistanceEquations(const CalibrationViews& views,
+                                                const CalibrationOrigin& origin,
+                                                const CalibrationState& state) {
+  const std::vector<MotionDerivatives> poses = PosesOf(state);
+  std::vector<DistanceEquation> equations;
+  for (const KnownDistance& known : views.distances) {
+    equations.push_back({ReducedCameraSystem::PlaceOfPose(known.a),
+                         ReducedCameraSystem::PlaceOfPose(known.b),
+                         KnownDistanceError(poses[known.a], poses[known.b],
+                                            state.theta[kDepthFactor], known),
+                         origin.width[kDepthFactor]});
+  }
+  return equations;
+}
+
+// The information of known distances and the prior.
+Eigen::MatrixXd KnownBefore(const ReducedCameraSystem& equations,
+                            const std::vector<DistanceEquation>& distances) {
+  const Eigen::Index size = equations.hessian.rows();
+  const int y_at = equations.PlaceOfY();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
+  for (const auto& [place_a, place_b, error, factor_width] : distances) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
+    if (place_a >= 0) row.segment<6>(place_a) += error.a.transpose();
+    if (place_b >= 0) row.segment<6>(place_b) += error.b.transpose();
+    row[y_at + kDepthFactor] += error.by_factor * factor_width;
+    information.noalias() += row * row.transpose();
+  }
+  information.diagonal().tail<kCalibrationSize>().array() += 1.0;
+  // For keyframes that no landmark connects with the first one: little, but
+  // more than rounding errors.
+  information.diagonal().head(y_at).array() +=
+      1e-9 + 1e-12 * equations.hessian.diagonal().maxCoeff();
+  return information;
+}
+
+// The covariance of y due to the scatter of landmarks. `inverse`: the columns
+// of y in the inverse of all equations.
+Eigen::MatrixXd LandmarkScatter(const ReducedCameraSystem& equations,
+                                const Eigen::MatrixXd& inverse) {
+  // The shift of y due to the landmarks of each anchor keyframe.
+  const Eigen::MatrixXd moves = inverse.transpose() * equations.gradients;
+  int groups = 0;
+  for (Eigen::Index k = 0; k < moves.cols(); ++k) {
+    groups += moves.col(k).norm() > 0.0;
+  }
+  const double correction =
+      groups > 1 ? static_cast<double>(groups) / (groups - 1) : 1.0;
+  return correction * moves * moves.transpose();
+}
+
+// The same due to distances and the prior, whose noise is taken as stated.
+CalibrationMatrix StatedScatter(const std::vector<DistanceEquation>& distances,
+                                const Eigen::MatrixXd& inverse) {
+  const auto of_y = inverse.bottomRows<kCalibrationSize>();
+  CalibrationMatrix scatter = of_y.transpose() * of_y;
+  for (const auto& [place_a, place_b, error, factor_width] : distances) {
+    CalibrationVector move =
+        of_y.row(kDepthFactor).transpose() * error.by_factor * factor_width;
+    if (place_a >= 0) {
+      move += inverse.middleRows<6>(place_a).transpose() * error.a.transpose();
+    }
+    if (place_b >= 0) {
+      move += inverse.middleRows<6>(place_b).transpose() * error.b.transpose();
+    }
+    scatter += move * move.transpose();
+  }
+  return scatter;
+}
+
 }  // namespace
 
 ReducedCameraSystem MakeReducedCameraSystem(const CalibrationViews& views,
@@ -171,34 +248,16 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
                         const CalibrationState& state,
                         CalibrationMatrix* model_covariance,
                         CalibrationMatrix* sandwich_covariance) {
-  const std::vector<MotionDerivatives> poses = PosesOf(state);
-  const int num_poses = static_cast<int>(poses.size());
   const ReducedCameraSystem equations =
       MakeReducedCameraSystem(views, training_only, origin, state);
-  const int size = static_cast<int>(equations.hessian.rows());
-  Eigen::MatrixXd known_before = Eigen::MatrixXd::Zero(size, size);
-  const int y_at = equations.PlaceOfY();
-  const auto place_of = ReducedCameraSystem::PlaceOfPose;
-  for (const KnownDistance& known : views.distances) {
-    const KnownDistanceError error(poses[known.a], poses[known.b],
-                                   state.theta[kDepthFactor], known);
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
-    if (known.a > 0) row.segment<6>(place_of(known.a)) += error.a.transpose();
-    if (known.b > 0) row.segment<6>(place_of(known.b)) += error.b.transpose();
-    row[y_at + kDepthFactor] += error.by_factor * origin.width[kDepthFactor];
-    known_before.noalias() += row * row.transpose();
-  }
-  known_before.diagonal().tail<kCalibrationSize>().array() += 1.0;
-  // For keyframes that no landmark connects with the first one: little, but
-  // more than rounding errors.
-  known_before.diagonal().head(y_at).array() +=
-      1e-9 + 1e-12 * equations.hessian.diagonal().maxCoeff();
-
+  const std::vector<DistanceEquation> distances =
+      DistanceEquations(views, origin, state);
+  const Eigen::MatrixXd known_before = KnownBefore(equations, distances);
   Eigen::MatrixXd last;  // columns of the inverse
   const auto invert = [&](double slope) {
     Eigen::MatrixXd H = slope * equations.hessian + known_before;
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(H);
-    last = Eigen::MatrixXd::Zero(size, kCalibrationSize);
+    last = Eigen::MatrixXd::Zero(H.rows(), kCalibrationSize);
     last.bottomRows<kCalibrationSize>().setIdentity();
     cholesky.solveInPlace(last);
     return cholesky.info() == Eigen::Success;
@@ -209,32 +268,10 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   const double slope =
       equations.weight_p > 0.0 ? equations.slope_p / equations.weight_p : 1.0;
   if (!invert(std::max(slope, kMinSlope))) return false;
-  // The shift of y due to the landmarks of each anchor keyframe.
-  Eigen::MatrixXd moves = last.transpose() * equations.gradients;
-  // The noise of distances and of the prior is taken as stated.
-  CalibrationMatrix exact = last.bottomRows<kCalibrationSize>().transpose() *
-                            last.bottomRows<kCalibrationSize>();
-  for (const KnownDistance& known : views.distances) {
-    const KnownDistanceError error(poses[known.a], poses[known.b],
-                                   state.theta[kDepthFactor], known);
-    CalibrationVector move = last.row(y_at + kDepthFactor).transpose() *
-                             error.by_factor * origin.width[kDepthFactor];
-    if (known.a > 0) {
-      move += last.middleRows<6>(place_of(known.a)).transpose() *
-              error.a.transpose();
-    }
-    if (known.b > 0) {
-      move += last.middleRows<6>(place_of(known.b)).transpose() *
-              error.b.transpose();
-    }
-    exact += move * move.transpose();
-  }
-  int groups = 0;
-  for (int k = 0; k < num_poses; ++k) groups += moves.col(k).norm() > 0.0;
-  const double correction =
-      groups > 1 ? static_cast<double>(groups) / (groups - 1) : 1.0;
   *sandwich_covariance =
-      scale * (correction * moves * moves.transpose() + exact) * scale;
+      scale *
+      (LandmarkScatter(equations, last) + StatedScatter(distances, last)) *
+      scale;
   return model_covariance->allFinite() && sandwich_covariance->allFinite();
 }
 
