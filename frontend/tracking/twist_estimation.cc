@@ -23,6 +23,93 @@ double Weight(double square, double sigma) {
                 (1.0 + square / (sigma * sigma * kLossWidth * kLossWidth)));
 }
 
+// What rows tell of a change of the velocity, whatever the motion is.
+struct RowInformation {
+  // A change of the velocity changes the motion by -follows.
+  MotionMatrix follows;
+
+  // The normal equations of the change.
+  MotionMatrix information;
+  MotionVector right;
+};
+
+// Normal equations of the change of the motion (rotation, then translation, in
+// current axes) and the change of the velocity (angular, then linear).
+class TwistEquations {
+ public:
+  TwistEquations(const Camera& camera, const FrameTiming& timing, double spread)
+      : camera_(camera), timing_(timing), spread_(spread) {}
+
+  // Adds a match whose point is expected here in current axes.
+  void Add(const Match& match, const Eigen::Vector3d& point) {
+    const auto& [ref, cur] = match;
+    const double inverse = 1.0 / point.z();
+    const double x = point.x() * inverse, y = point.y() * inverse;
+    // Derivatives of x, y and z by the motion.
+    MotionVector by_x, by_y, by_z;
+    by_x << -x * y, 1.0 + x * x, -y, inverse, 0.0, -x * inverse;
+    by_y << -1.0 - y * y, x * y, x, 0.0, inverse, -y * inverse;
+    by_z << point.y(), -point.x(), 0.0, 0.0, 0.0, 1.0;
+    // The row in which the point was seen, up to some pixels.
+    const double row = cur.v;
+    const double u = camera_.fx * x + camera_.cx - cur.u;
+    const double v = camera_.fy * y + camera_.cy - cur.v;
+    const double weight =
+        Weight(u * u + v * v, spread_ * std::hypot(ref.sigma_px, cur.sigma_px));
+    // For a point seen `seen` seconds after the stamp, a change of the velocity
+    // acts like a motion in the opposite direction for this time.
+    const double seen = timing_.color.RowTime(row, camera_.height);
+    AddResidual(camera_.fx * by_x, -seen * camera_.fx * by_x, u, weight);
+    AddResidual(camera_.fy * by_y, -seen * camera_.fy * by_y, v, weight);
+    if (cur.depth <= 0.0) return;
+    // Between the colour and the depth exposure the surface moves along the
+    // viewing ray; how far depends on its slope.
+    const double since = timing_.depth.RowTime(row, camera_.height) - seen;
+    MotionVector along_ray = MotionVector::Zero();
+    if (since != 0.0) {
+      const double slope = cur.normal.dot(Eigen::Vector3d(x, y, 1.0));
+      if (!(slope < kFlattest)) return;
+      along_ray << point.cross(cur.normal) / slope, cur.normal / slope;
+    }
+    const double z = point.z() - cur.depth;
+    AddResidual(
+        by_z, -seen * by_z - since * along_ray, z,
+        Weight(z * z, spread_ * std::hypot(ref.sigma_depth, cur.sigma_depth)));
+  }
+
+  // Eliminates the motion.
+  RowInformation WithoutMotion() const {
+    // Rounding errors make the two triangles differ.
+    Matrix12 hessian = hessian_.selfadjointView<Eigen::Lower>();
+    // The motion has no prior; this only keeps the system solvable.
+    hessian.diagonal().head<6>().array() += 1e-3;
+    // A change of the velocity changes the motion by -H_mm^-1 H_mv.
+    const MotionMatrix H_mm = hessian.topLeftCorner<6, 6>();
+    const MotionMatrix H_mv = hessian.topRightCorner<6, 6>();
+    const MotionMatrix follows = H_mm.ldlt().solve(H_mv);
+    return {follows,
+            hessian.bottomRightCorner<6, 6>() - H_mv.transpose() * follows,
+            right_.tail<6>() - follows.transpose() * right_.head<6>()};
+  }
+
+ private:
+  // Takes the derivatives of a residual by both changes.
+  void AddResidual(const MotionVector& by_motion,
+                   const MotionVector& by_velocity, double residual,
+                   double weight) {
+    Vector12 both;
+    both << by_motion, by_velocity;
+    hessian_.noalias() += both * (weight * both).transpose();
+    right_ -= weight * residual * both;
+  }
+
+  const Camera& camera_;
+  const FrameTiming& timing_;
+  const double spread_;  // of residuals, in sigmas
+  Matrix12 hessian_ = Matrix12::Zero();
+  Vector12 right_ = Vector12::Zero();
+};
+
 }  // namespace
 
 TwistEstimate ExpectedTwist(const FrameTiming& timing,
@@ -40,69 +127,14 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
                             const FrameTiming& timing, const Twist& prior_mean,
                             const VelocityPrior& prior) {
   // Errors not covered by the noise model are no smaller here.
-  const double spread = std::max(1.0, sigma);
-  const Camera& camera = matches.camera();
-  // Normal equations of the change of the motion (rotation, then translation,
-  // in current axes) and the change of the velocity (angular, then linear).
-  Matrix12 hessian = Matrix12::Zero();
-  Vector12 right = Vector12::Zero();
-  // Adds a residual with its derivatives by both changes.
-  const auto add = [&](const MotionVector& by_motion,
-                       const MotionVector& by_velocity, double residual,
-                       double weight) {
-    Vector12 both;
-    both << by_motion, by_velocity;
-    hessian.noalias() += both * (weight * both).transpose();
-    right -= weight * residual * both;
-  };
+  TwistEquations equations(matches.camera(), timing, std::max(1.0, sigma));
   for (size_t i = 0; i < matches.size(); ++i) {
-    const auto& [ref, cur] = matches[i];
-    if (!is_inlier[i] || ref.depth <= 0.0) continue;
-    const Eigen::Vector3d point = cur_from_ref * matches.Point(ref);
-    if (!(point.z() > 0.0)) continue;
-    const double inverse = 1.0 / point.z();
-    const double x = point.x() * inverse, y = point.y() * inverse;
-    // Derivatives of x, y and z by the motion.
-    MotionVector by_x, by_y, by_z;
-    by_x << -x * y, 1.0 + x * x, -y, inverse, 0.0, -x * inverse;
-    by_y << -1.0 - y * y, x * y, x, 0.0, inverse, -y * inverse;
-    by_z << point.y(), -point.x(), 0.0, 0.0, 0.0, 1.0;
-    // The row in which the point was seen, up to some pixels.
-    const double row = cur.v;
-    const double u = camera.fx * x + camera.cx - cur.u;
-    const double v = camera.fy * y + camera.cy - cur.v;
-    const double weight =
-        Weight(u * u + v * v, spread * std::hypot(ref.sigma_px, cur.sigma_px));
-    // For a point seen `seen` seconds after the stamp, a change of the velocity
-    // acts like a motion in the opposite direction for this time.
-    const double seen = timing.color.RowTime(row, camera.height);
-    add(camera.fx * by_x, -seen * camera.fx * by_x, u, weight);
-    add(camera.fy * by_y, -seen * camera.fy * by_y, v, weight);
-    if (cur.depth <= 0.0) continue;
-    // Between the colour and the depth exposure the surface moves along the
-    // viewing ray; how far depends on its slope.
-    const double since = timing.depth.RowTime(row, camera.height) - seen;
-    MotionVector along_ray = MotionVector::Zero();
-    if (since != 0.0) {
-      const double slope = cur.normal.dot(Eigen::Vector3d(x, y, 1.0));
-      if (!(slope < kFlattest)) continue;
-      along_ray << point.cross(cur.normal) / slope, cur.normal / slope;
-    }
-    const double z = point.z() - cur.depth;
-    add(by_z, -seen * by_z - since * along_ray, z,
-        Weight(z * z, spread * std::hypot(ref.sigma_depth, cur.sigma_depth)));
+    const Match& match = matches[i];
+    if (!is_inlier[i] || match.prev.depth <= 0.0) continue;
+    const Eigen::Vector3d point = cur_from_ref * matches.Point(match.prev);
+    if (point.z() > 0.0) equations.Add(match, point);
   }
-  hessian = hessian.selfadjointView<Eigen::Lower>();  // exactly symmetric
-  // The motion has no prior; this only keeps the system solvable.
-  hessian.diagonal().head<6>().array() += 1e-3;
-  // A change of the velocity changes the motion by -H_mm^-1 H_mv.
-  const MotionMatrix H_mm = hessian.topLeftCorner<6, 6>();
-  const MotionMatrix H_mv = hessian.topRightCorner<6, 6>();
-  const MotionMatrix follows = H_mm.ldlt().solve(H_mv);
-  const MotionMatrix by_rows =
-      hessian.bottomRightCorner<6, 6>() - H_mv.transpose() * follows;
-  const MotionVector right_by_rows =
-      right.tail<6>() - follows.transpose() * right.head<6>();
+  const RowInformation rows = equations.WithoutMotion();
   const MotionVector prior_information =
       IndependentErrors(1.0 / prior.SigmaAngular(), 1.0 / prior.SigmaLinear())
           .diagonal();
@@ -112,22 +144,22 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   // The information S of the rows is about the velocity relative to that of the
   // reference, whose covariance is P: (S^-1 + P)^-1 = (1 + S P)^-1 S.
   const Eigen::PartialPivLU<MotionMatrix> with_reference(
-      MotionMatrix::Identity() + by_rows * prior.reference_covariance);
-  MotionMatrix information = with_reference.solve(by_rows);
+      MotionMatrix::Identity() + rows.information * prior.reference_covariance);
+  MotionMatrix information = with_reference.solve(rows.information);
   information.diagonal() += prior_information;
   const MotionMatrix covariance = information.inverse();
   const MotionVector change =
-      covariance * (with_reference.solve(right_by_rows) +
+      covariance * (with_reference.solve(rows.right) +
                     prior_information.cwiseProduct(prior_change));
   // An error that the reference has as well does not affect the motion.
-  MotionMatrix relative_information = by_rows;
+  MotionMatrix relative_information = rows.information;
   relative_information.diagonal() += prior_information;
   MotionMatrix to_center = MotionMatrix::Identity();
   to_center.bottomRightCorner<3, 3>() =
       -cur_from_ref.rotation.conjugate().toRotationMatrix();
-  const MotionMatrix moves = to_center * follows;
+  const MotionMatrix moves = to_center * rows.follows;
   return {timing.twist + Twist{change.head<3>(), change.tail<3>()}, covariance,
-          -follows,
+          -rows.follows,
           moves * relative_information.ldlt().solve(moves.transpose())};
 }
 
