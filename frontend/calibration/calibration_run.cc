@@ -13,7 +13,8 @@ namespace {
 
 // Returns the range of frames (first-last:step) that reduces the frame rate to
 // `max_rate`, or an empty string if no frame has to be left out.
-std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
+std::string ThinnedFrames(const std::vector<double>& timestamps,
+                          double max_rate) {
   if (timestamps.size() < 2 || max_rate == 0.0) return "";
   std::vector<double> intervals;
   for (size_t i = 1; i < timestamps.size(); ++i) {
@@ -26,6 +27,45 @@ std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
   if (step < 2) return "";
   return "0-" + std::to_string(timestamps.size() - 1) + ":" +
          std::to_string(step);
+}
+
+// The same for a recording, unless its settings name frames.
+SequenceSettings Thinned(SequenceSettings sequence, double max_rate) {
+  if (sequence.frames.empty()) {
+    sequence.frames =
+        ThinnedFrames(OpenSequence(sequence).source->timestamps(), max_rate);
+  }
+  return sequence;
+}
+
+// The settings with which all passes track.
+OdometrySettings WithShutter(const OdometrySettings& odometry) {
+  OdometrySettings with_shutter = odometry;
+  with_shutter.odometry.shutter = ShutterUse::kCamera;
+  with_shutter.odometry.max_time_shift = 1.0;  // see CalibrationOdometry
+  // The noise is the same for all cameras and passes, because scatter is
+  // measured relative to it.
+  with_shutter.depth_noise = NoiseFor(odometry, {});
+  return with_shutter;
+}
+
+// Maps a recording, and sets all of the result that concerns its frames.
+void MapFrames(Sequence* sequence, int threads,
+               const std::function<void()>& on_frame, SequenceRun* run,
+               RecordingCalibration* all) {
+  all->stopped = TrackAll(sequence->source.get(), threads, {run},
+                          [&](const Frame& /*frame*/) {
+                            on_frame();
+                            return true;
+                          });
+  all->damaged = static_cast<int>(run->damaged().size());
+  all->left_out = sequence->remarks;
+  for (const auto& line :
+       DroppedFrames(*sequence->source, run->damaged(), run->repeated())) {
+    all->left_out.push_back(line);
+  }
+  run->Finish(sequence->GroundTruth());
+  all->path = run->slam()->Path();
 }
 
 }  // namespace
@@ -61,26 +101,17 @@ RecordingCalibration CalibrateRecording(
     const std::function<void(int pass, int done, int all)>& on_frame,
     const std::function<void(int pass, int done)>& on_iteration) {
   RequireSound(settings.Check(), "calibration: ");
-  RecordingCalibration all;
-  RgbdCamera first;
-  FreeParts found_earlier;
-  SequenceSettings part = sequence;
-  OdometrySettings with_shutter = odometry;
-  with_shutter.odometry.shutter = ShutterUse::kCamera;
-  with_shutter.odometry.max_time_shift = 1.0;  // see CalibrationOdometry
-  // The noise is the same for all cameras and passes, because scatter is
-  // measured relative to it.
-  with_shutter.depth_noise = NoiseFor(odometry, {});
-  if (part.frames.empty()) {
-    part.frames =
-        Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
-  }
+  const OdometrySettings with_shutter = WithShutter(odometry);
+  const SequenceSettings part = Thinned(sequence, settings.max_rate);
   std::optional<RgbdCamera> known;
   if (odometry.odometry.shutter == ShutterUse::kNone) {
     // The shutter is to be estimated from zero.
     known = OpenSequence(sequence).source->camera();
     known->color_shutter = known->depth_shutter = Shutter();
   }
+  RecordingCalibration all;
+  RgbdCamera first;
+  FreeParts found_earlier;
   for (int pass = 1;; ++pass) {
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
@@ -89,26 +120,16 @@ RecordingCalibration CalibrateRecording(
     const RgbdCamera camera = opened.source->camera();
     SequenceRun run(with_shutter, slam, camera, opened.inputs);
     int done = 0, iterations = 0;
-    all.stopped = TrackAll(opened.source.get(), threads, {&run},
-                           [&](const Frame& /*frame*/) {
-                             if (on_frame) on_frame(pass, ++done, frames);
-                             return true;
-                           });
-    all.damaged = static_cast<int>(run.damaged().size());
-    all.left_out = opened.remarks;
-    for (const auto& line :
-         DroppedFrames(*opened.source, run.damaged(), run.repeated())) {
-      all.left_out.push_back(line);
-    }
-    const Trajectory* const truth = opened.GroundTruth();
-    run.Finish(truth);
+    const auto count_frame = [&] {
+      if (on_frame) on_frame(pass, ++done, frames);
+    };
+    MapFrames(&opened, threads, count_frame, &run, &all);
     const CalibrationResult result = Calibrate(
         run.slam()->Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
-        settings, {truth, opened.inputs.motion_guess.get()}, threads,
-        pass > 1 ? &first : nullptr, found_earlier, [&] {
+        settings, {opened.GroundTruth(), opened.inputs.motion_guess.get()},
+        threads, pass > 1 ? &first : nullptr, found_earlier, [&] {
           if (on_iteration) on_iteration(pass, ++iterations);
         });
-    all.path = run.slam()->Path();
     if (pass == 1) {
       first = camera;
       all.result = result;
