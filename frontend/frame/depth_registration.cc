@@ -21,6 +21,27 @@ Places FirstBeyond(const Block& x, float end) {
   return (x + 1.0F).max(0.0F).min(end).cast<int>();
 }
 
+// Half-open rectangles in an image; that of an unseen pixel is empty.
+struct Rectangles {
+  Places u0, u1, v0, v1;
+};
+
+// Fills rectangles with depths, rounded down, where no nearer depth is yet.
+void DrawNearest(const Rectangles& at, const Block& depths, cv::Mat* image) {
+  for (Eigen::Index i = 0; i < depths.size(); ++i) {
+    if (at.u0[i] >= at.u1[i]) continue;
+    // Subtracting one wraps no depth (0) around to the largest depth.
+    const auto value = static_cast<uint16_t>(static_cast<int>(depths[i]) - 1);
+    for (int v = at.v0[i]; v < at.v1[i]; ++v) {
+      auto* out = image->ptr<uint16_t>(v);
+      for (int u = at.u0[i]; u < at.u1[i]; ++u) {
+        const auto before = static_cast<uint16_t>(out[u] - 1);
+        out[u] = static_cast<uint16_t>(std::min(before, value) + 1);
+      }
+    }
+  }
+}
+
 // The size of a depth pixel in the colour image at the same depth, px. `place`:
 // its ray on the plane z = 1; NaN: none.
 Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& place,
@@ -111,24 +132,11 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
     const auto is_seen = raw > 0.0F && raw < Frame::kNoDepth &&
                          there_z > kMinDepth && ray_r2 < max_tangent_squared &&
                          there < Frame::kNoDepth;
-    // Rectangles are half-open; that of an unseen pixel is empty.
     const Block right = is_seen.select(u + half_width, -1.0F);
-    const Places u0 = FirstBeyond(u - half_width, columns);
-    const Places u1 = FirstBeyond(right, columns);
-    const Places v0 = FirstBeyond(v - half_height, rows);
-    const Places v1 = FirstBeyond(v + half_height, rows);
-    for (int i = 0; i < n; ++i) {
-      if (u0[i] >= u1[i]) continue;
-      // Subtracting one wraps no depth (0) around to the largest depth.
-      const auto value = static_cast<uint16_t>(static_cast<int>(there[i]) - 1);
-      for (int at_v = v0[i]; at_v < v1[i]; ++at_v) {
-        auto* out = registered->ptr<uint16_t>(at_v);
-        for (int at_u = u0[i]; at_u < u1[i]; ++at_u) {
-          const auto before = static_cast<uint16_t>(out[at_u] - 1);
-          out[at_u] = static_cast<uint16_t>(std::min(before, value) + 1);
-        }
-      }
-    }
+    const Rectangles covered = {
+        FirstBeyond(u - half_width, columns), FirstBeyond(right, columns),
+        FirstBeyond(v - half_height, rows), FirstBeyond(v + half_height, rows)};
+    DrawNearest(covered, there, registered);
   }
 }
 
