@@ -53,6 +53,65 @@ Eigen::Vector3d MedianOf(const std::vector<MeanForce>& forces) {
   return median;
 }
 
+// The norms of what gravity and bias leave of each mean.
+std::vector<double> ResidualsOf(const std::vector<MeanForce>& forces,
+                                const Vector6d& x) {
+  std::vector<double> norms;
+  for (const MeanForce& force : forces) {
+    norms.push_back((force.world_from_cam.rotation.conjugate() * x.head<3>() +
+                     x.tail<3>() - force.up_in_cam)
+                        .norm());
+  }
+  return norms;
+}
+
+// Six numbers are found from 3 n values, so that the residuals of few are too
+// small.
+double ScatterOf(const std::vector<double>& norms) {
+  const double n = static_cast<double>(norms.size());
+  return std::max(kLeastScatter, Median(norms) /
+                                     std::sqrt(ChiSquaredMedian(3)) *
+                                     std::sqrt(n / (n - 2.0)));
+}
+
+struct NormalEquations {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d right = Vector6d::Zero();
+};
+
+// Each mean has the weight of Cauchy's loss at its residual.
+NormalEquations WeightedEquations(const std::vector<MeanForce>& forces,
+                                  const std::vector<double>& norms,
+                                  double scatter) {
+  const ceres::CauchyLoss loss(kCauchyWidth);
+  NormalEquations equations;
+  equations.information.diagonal().tail<3>().setConstant(
+      1.0 / (kAccelBiasSigma * kAccelBiasSigma));
+  for (size_t i = 0; i < forces.size(); ++i) {
+    double rho[3];
+    const double sigmas = norms[i] / scatter;
+    loss.Evaluate(sigmas * sigmas, rho);
+    const double weight = rho[1] / (scatter * scatter);
+    Eigen::Matrix<double, 3, 6> J;
+    J << forces[i].world_from_cam.rotation.conjugate().toRotationMatrix(),
+        Eigen::Matrix3d::Identity();
+    equations.information += weight * J.transpose() * J;
+    equations.right += weight * J.transpose() * forces[i].up_in_cam;
+  }
+  return equations;
+}
+
+// The standard deviation along the least certain axis across a direction.
+double LargestSigmaAcross(const Eigen::Vector3d& direction,
+                          const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d across =
+      Eigen::Matrix3d::Identity() - direction * direction.transpose();
+  const Eigen::Matrix3d covariance_across = across * covariance * across;
+  return std::sqrt(
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance_across)
+          .eigenvalues()[2]);
+}
+
 // Per axis of the world, in which gravity takes up what all means share.
 double BiasEffect(const std::vector<MeanForce>& forces,
                   const Eigen::Matrix3d& bias_covariance) {
@@ -105,39 +164,14 @@ GravityEstimate EstimateGravity(const std::vector<MeanForce>& forces) {
   }
   Vector6d x;  // [s b]
   x << MedianOf(forces), Eigen::Vector3d::Zero();
-  Matrix6d information;
+  NormalEquations equations;
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<double> norms;
-    for (const MeanForce& force : forces) {
-      norms.push_back((force.world_from_cam.rotation.conjugate() * x.head<3>() +
-                       x.tail<3>() - force.up_in_cam)
-                          .norm());
-    }
-    // Six numbers are found from 3 n values, so that the residuals of few are
-    // too small.
-    const double n = static_cast<double>(forces.size());
-    estimate.scatter =
-        std::max(kLeastScatter, Median(norms) / std::sqrt(ChiSquaredMedian(3)) *
-                                    std::sqrt(n / (n - 2.0)));
-    const ceres::CauchyLoss loss(kCauchyWidth);
-    information.setZero();
-    Vector6d right = Vector6d::Zero();
-    information.diagonal().tail<3>().setConstant(
-        1.0 / (kAccelBiasSigma * kAccelBiasSigma));
-    for (size_t i = 0; i < forces.size(); ++i) {
-      double rho[3];
-      const double sigmas = norms[i] / estimate.scatter;
-      loss.Evaluate(sigmas * sigmas, rho);
-      const double weight = rho[1] / (estimate.scatter * estimate.scatter);
-      Eigen::Matrix<double, 3, 6> J;
-      J << forces[i].world_from_cam.rotation.conjugate().toRotationMatrix(),
-          Eigen::Matrix3d::Identity();
-      information += weight * J.transpose() * J;
-      right += weight * J.transpose() * forces[i].up_in_cam;
-    }
-    x = information.ldlt().solve(right);
+    const std::vector<double> norms = ResidualsOf(forces, x);
+    estimate.scatter = ScatterOf(norms);
+    equations = WeightedEquations(forces, norms, estimate.scatter);
+    x = equations.information.ldlt().solve(equations.right);
   }
-  const Matrix6d covariance = information.inverse();
+  const Matrix6d covariance = equations.information.inverse();
   estimate.acceleration = x.head<3>().norm();
   estimate.bias = x.tail<3>();
   estimate.bias_covariance = covariance.bottomRightCorner<3, 3>();
@@ -145,13 +179,8 @@ GravityEstimate EstimateGravity(const std::vector<MeanForce>& forces) {
   estimate.refusal = FaultOf(estimate);
   if (!estimate.ok()) return estimate;
   estimate.up = x.head<3>().normalized();
-  const Eigen::Matrix3d across =
-      Eigen::Matrix3d::Identity() - estimate.up * estimate.up.transpose();
-  const Eigen::Matrix3d of_up =
-      across * covariance.topLeftCorner<3, 3>() * across;
   estimate.sigma =
-      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_up)
-                    .eigenvalues()[2]) /
+      LargestSigmaAcross(estimate.up, covariance.topLeftCorner<3, 3>()) /
       estimate.acceleration;
   return estimate;
 }
