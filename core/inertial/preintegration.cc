@@ -58,7 +58,6 @@ class Integrator {
 
     // Changes of [omega v p gyro accel] by those before; a bias is taken off
     // both samples.
-    constexpr int kOmega = 0, kV = 3, kP = 6, kGyro = 9, kAccel = 12;
     PreintegratedMotion::Covariance F =
         PreintegratedMotion::Covariance::Identity();
     const Matrix3d turn_by_gyro =
@@ -84,11 +83,19 @@ class Integrator {
     motion_->by_bias =
         (F.topLeftCorner<9, 9>() * motion_->by_bias + F.topRightCorner<9, 6>())
             .eval();
-
-    // White noise over dt in continuous time: one step alone determines both
-    // v and p, which samples with one error each would not.
     PreintegratedMotion::Covariance& P = motion_->covariance;
     P = (F * P * F.transpose()).eval();
+    AddNoise(dt);
+  }
+
+ private:
+  // Places in the covariance.
+  static constexpr int kOmega = 0, kV = 3, kP = 6, kGyro = 9, kAccel = 12;
+
+  // White noise over dt in continuous time: one step alone determines both v
+  // and p, which samples with one error each would not.
+  void AddNoise(double dt) {
+    PreintegratedMotion::Covariance& P = motion_->covariance;
     const double accel = noise_.accel_density * noise_.accel_density;
     const auto add = [&P](int row, int column, double variance) {
       P.block<3, 3>(row, column).diagonal().array() += variance;
@@ -102,7 +109,6 @@ class Integrator {
     add(kAccel, kAccel, noise_.accel_walk * noise_.accel_walk * dt);
   }
 
- private:
   const ImuNoise noise_;
   PreintegratedMotion* const motion_;
 };
