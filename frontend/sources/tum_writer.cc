@@ -119,58 +119,75 @@ void BeginImu(const fs::path& folder, const ImuSensor& sensor) {
                       FormatImuCalibration(sensor.calibration));
 }
 
-// The images are written by the threads that read them.
+// Writes images, from several threads.
+class ImageWriter {
+ public:
+  explicit ImageWriter(const fs::path& folder) : folder_(folder) {}
+
+  void Write(const Frame& frame) {
+    WritePng(folder_ / ImagePath("rgb", frame.timestamp),
+             frame.color.empty() ? frame.gray : WithGrayOf(frame));
+    const double stamp = DepthStamp(frame);
+    {
+      const std::lock_guard lock(mutex_);
+      if (!begun_.insert(stamp).second) return;
+    }
+    WritePng(folder_ / ImagePath("depth", stamp), frame.depth);
+  }
+
+ private:
+  const fs::path& folder_;
+  std::mutex mutex_;
+  std::set<double> begun_;  // stamps of depth images; frames may share one
+};
+
+// Writes the frames and the inertial samples that come with them.
+WrittenSequence WriteFrames(FrameSource* source, const fs::path& folder,
+                            const TumWriterOptions& options,
+                            StampPairs* pairs) {
+  ImageWriter images(folder);
+  const std::optional<ImuSensor> imu = source->imu();
+  if (imu.has_value()) BeginImu(folder, *imu);
+  // The images are written by the threads that read them.
+  FrameStream stream(
+      source, [&](const Frame& frame) { images.Write(frame); },
+      std::max(1, options.threads), options.max_damaged);
+  WrittenSequence written;
+  while (const std::optional<StreamedFrame> next = stream.Next()) {
+    const double color = next->frame.timestamp;
+    const double depth = DepthStamp(next->frame);
+    const bool is_new = pairs->empty() || pairs->back().second != depth;
+    pairs->emplace_back(color, depth);
+    AddToLists(folder, color, is_new ? std::optional(depth) : std::nullopt);
+    if (!next->imu.empty()) {
+      std::ofstream(folder / kImuList, std::ios::app)
+          << FormatImuRows(next->imu, imu->has_gyro, /*has_header=*/false);
+      written.imu_samples += static_cast<int>(next->imu.size());
+    }
+    ++written.frames;
+    if (options.progress) options.progress(written.frames);
+    if (!options.stop || !written.stopped.empty()) continue;
+    written.stopped = options.stop();
+    if (!written.stopped.empty()) stream.End();
+  }
+  written.damaged = stream.damaged();
+  if (written.frames + written.damaged.size() == source->timestamps().size()) {
+    written.stopped.clear();  // it was asked to stop at its last frame
+  }
+  if (written.stopped.empty()) written.stopped = stream.stopped();
+  return written;
+}
+
 WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
                          const TumWriterOptions& options) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
-  std::mutex mutex;
-  std::set<double> begun;  // stamps of depth images; frames may share one
-  const auto write = [&](const Frame& frame) {
-    WritePng(folder / ImagePath("rgb", frame.timestamp),
-             frame.color.empty() ? frame.gray : WithGrayOf(frame));
-    const double stamp = DepthStamp(frame);
-    {
-      const std::lock_guard lock(mutex);
-      if (!begun.insert(stamp).second) return;
-    }
-    WritePng(folder / ImagePath("depth", stamp), frame.depth);
-  };
-  WrittenSequence written;
-  StampPairs pairs;
   RgbdCamera camera = source->camera();
   camera.depth_correction = {};  // the frames are corrected
   WriteFileAtomically((folder / "camera.yaml").string(),
                       FormatCameraFile(camera, ""));
-  const std::optional<ImuSensor> imu = source->imu();
-  if (imu.has_value()) BeginImu(folder, *imu);
-  {
-    FrameStream stream(source, write, std::max(1, options.threads),
-                       options.max_damaged);
-    while (const std::optional<StreamedFrame> next = stream.Next()) {
-      const double color = next->frame.timestamp;
-      const double depth = DepthStamp(next->frame);
-      const bool is_new = pairs.empty() || pairs.back().second != depth;
-      pairs.emplace_back(color, depth);
-      AddToLists(folder, color, is_new ? std::optional(depth) : std::nullopt);
-      if (!next->imu.empty()) {
-        std::ofstream(folder / kImuList, std::ios::app)
-            << FormatImuRows(next->imu, imu->has_gyro, /*has_header=*/false);
-        written.imu_samples += static_cast<int>(next->imu.size());
-      }
-      ++written.frames;
-      if (options.progress) options.progress(written.frames);
-      if (!options.stop || !written.stopped.empty()) continue;
-      written.stopped = options.stop();
-      if (!written.stopped.empty()) stream.End();
-    }
-    written.damaged = stream.damaged();
-    if (written.frames + written.damaged.size() ==
-        source->timestamps().size()) {
-      written.stopped.clear();  // it was asked to stop at its last frame
-    }
-    if (written.stopped.empty()) written.stopped = stream.stopped();
-  }
+  StampPairs pairs;
+  WrittenSequence written = WriteFrames(source, folder, options, &pairs);
   written.remark = WriteLists(folder, pairs);
   const Trajectory ground_truth =
       options.ground_truth ? options.ground_truth() : source->ground_truth();
