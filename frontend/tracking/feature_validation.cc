@@ -50,6 +50,61 @@ class CellCounts {
   int outside_ = 0;
 };
 
+// Votes of features on the cells of a CellMask: for the motion, or against it.
+class MotionVotes {
+ public:
+  explicit MotionVotes(const Camera& camera)
+      : camera_(camera),
+        columns_((camera.width - 1) / CellMask::kCellPx + 1),
+        rows_((camera.height - 1) / CellMask::kCellPx + 1),
+        votes_(columns_ * rows_, 0),
+        has_features_(votes_.size()),
+        agrees_(votes_.size()) {}
+
+  // A feature votes for the cells around it. Takes an ideal pixel, without lens
+  // distortion.
+  void Add(const Eigen::Vector2d& ideal, int count) {
+    constexpr int kReachCells = 2;
+    const Eigen::Vector2d pixel =
+        camera_.HasDistortion()
+            ? camera_.Project(camera_.Ray(ideal.x(), ideal.y()))
+            : ideal;
+    const int column = static_cast<int>(pixel.x() / CellMask::kCellPx);
+    const int row = static_cast<int>(pixel.y() / CellMask::kCellPx);
+    const int last_row = std::min(row + kReachCells, rows_ - 1);
+    const int last_column = std::min(column + kReachCells, columns_ - 1);
+    for (int r = std::max(row - kReachCells, 0); r <= last_row; ++r) {
+      for (int c = std::max(column - kReachCells, 0); c <= last_column; ++c) {
+        votes_[r * columns_ + c] += count;
+        if (std::abs(r - row) > 1 || std::abs(c - column) > 1) continue;
+        has_features_[r * columns_ + c] = true;
+        if (count > 0) agrees_[r * columns_ + c] = true;
+      }
+    }
+  }
+
+  // Marks the cells with at least so many more votes against the motion.
+  void MarkContradicted(int votes, CellMask* mask) const {
+    mask->columns = columns_;
+    mask->cells.clear();
+    for (const int sum : votes_) mask->cells.push_back(sum <= -votes);
+  }
+
+  // The share of the regions with features in which some agree.
+  double AgreeingShare() const {
+    const auto count = [](const std::vector<bool>& cells) {
+      return std::count(cells.begin(), cells.end(), true);
+    };
+    return count(agrees_) / std::max(1.0, 1.0 * count(has_features_));
+  }
+
+ private:
+  const Camera& camera_;
+  const int columns_, rows_;
+  std::vector<int> votes_;
+  std::vector<bool> has_features_, agrees_;  // next to the cell
+};
+
 }  // namespace
 
 FeatureValidation::FeatureValidation(const FeatureSet& last,
@@ -130,64 +185,36 @@ int CellsOfInliers(const TrackingResult& tracked) {
 
 double MarkMoving(const FeatureSet& reference, bool missing_contradict,
                   TrackingResult* tracked) {
-  // A feature votes for the cells around it. A feature that is not found may be
-  // hidden or only blurred.
-  constexpr int kReachCells = 2;
+  // A feature that is not found may be hidden or only blurred.
   constexpr int kFound = 3, kMissing = 1, kContradicted = 8;
   const FeatureMatches& found = tracked->matches;
   const FeatureMatches& on_probation = tracked->on_probation;
   const Rigid3d& cur_from_ref = tracked->estimate.cur_from_prev;
   const Camera& camera = found.matches.camera();
-  const int columns = (camera.width - 1) / CellMask::kCellPx + 1;
-  const int rows = (camera.height - 1) / CellMask::kCellPx + 1;
-  std::vector<int> votes(columns * rows, 0);
-  std::vector<bool> has_features(votes.size()), agrees(votes.size());
-  // Takes an ideal pixel, without lens distortion.
-  const auto vote = [&](const Eigen::Vector2d& ideal, int count) {
-    const Eigen::Vector2d pixel =
-        camera.HasDistortion()
-            ? camera.Project(camera.Ray(ideal.x(), ideal.y()))
-            : ideal;
-    const int column = static_cast<int>(pixel.x() / CellMask::kCellPx);
-    const int row = static_cast<int>(pixel.y() / CellMask::kCellPx);
-    const int last_row = std::min(row + kReachCells, rows - 1);
-    const int last_column = std::min(column + kReachCells, columns - 1);
-    for (int r = std::max(row - kReachCells, 0); r <= last_row; ++r) {
-      for (int c = std::max(column - kReachCells, 0); c <= last_column; ++c) {
-        votes[r * columns + c] += count;
-        if (std::abs(r - row) > 1 || std::abs(c - column) > 1) continue;
-        has_features[r * columns + c] = true;
-        if (count > 0) agrees[r * columns + c] = true;
-      }
-    }
-  };
+  MotionVotes votes(camera);
   std::vector<bool> is_found(reference.observations.size(), false);
   for (size_t i = 0; i < found.features.size(); ++i) {
     const Observation& cur = found.matches[i].cur;
     is_found[found.features[i]] = true;
     if (tracked->estimate.residual_degrees[i] == 0) continue;  // tells nothing
-    vote({cur.u, cur.v}, tracked->estimate.is_inlier[i] ? kFound : -kFound);
+    votes.Add({cur.u, cur.v},
+              tracked->estimate.is_inlier[i] ? kFound : -kFound);
   }
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
     const Observation& cur = on_probation.matches[i].cur;
     const bool has_agreed = AgreesWithMotion(on_probation, i, cur_from_ref);
-    vote({cur.u, cur.v}, has_agreed ? kFound : -kFound);
+    votes.Add({cur.u, cur.v}, has_agreed ? kFound : -kFound);
     is_found[on_probation.features[i]] = true;
   }
   for (size_t i = 0; missing_contradict && i < is_found.size(); ++i) {
     if (is_found[i]) continue;
     const auto pixel = SeenAt(camera, cur_from_ref, reference.observations[i]);
-    if (pixel.has_value() && camera.Contains(*pixel)) vote(*pixel, -kMissing);
+    if (pixel.has_value() && camera.Contains(*pixel)) {
+      votes.Add(*pixel, -kMissing);
+    }
   }
-  tracked->moving.columns = columns;
-  tracked->moving.cells.clear();
-  for (const int sum : votes) {
-    tracked->moving.cells.push_back(sum <= -kContradicted);
-  }
-  const auto count = [](const std::vector<bool>& cells) {
-    return std::count(cells.begin(), cells.end(), true);
-  };
-  return count(agrees) / std::max(1.0, 1.0 * count(has_features));
+  votes.MarkContradicted(kContradicted, &tracked->moving);
+  return votes.AgreeingShare();
 }
 
 }  // namespace rgbd_pose
