@@ -1,6 +1,5 @@
 #include "apps/python/factor_problem.h"
 
-#include <ceres/crs_matrix.h>
 #include <ceres/iteration_callback.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -79,11 +78,7 @@ Eigen::SparseMatrix<double> Information(FactorProblem* problem) {
     throw InputError(
         "covariance: a factor cannot be evaluated at these blocks");
   }
-  using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
-  const Eigen::Map<const Sparse> J(
-      crs.num_rows, crs.num_cols, static_cast<int>(crs.values.size()),
-      crs.rows.data(), crs.cols.data(), crs.values.data());
-  return J.transpose() * J;
+  return InformationOf(crs);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "core/pose_graph/graph_problem.h"
 
-#include <ceres/crs_matrix.h>
-
 #include <cmath>
 
 #include "core/factors/factor.h"
@@ -66,11 +64,7 @@ Eigen::SparseMatrix<double> GraphProblem::Information() {
   }
   ceres::CRSMatrix crs;
   problem_->Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
-  using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
-  const Eigen::Map<const Sparse> J(
-      crs.num_rows, crs.num_cols, static_cast<int>(crs.values.size()),
-      crs.rows.data(), crs.cols.data(), crs.values.data());
-  return J.transpose() * J;
+  return InformationOf(crs);
 }
 
 MotionMatrix GraphProblem::CovarianceOf(const SparseInverse& inverse, int a,

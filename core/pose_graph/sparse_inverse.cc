@@ -11,6 +11,15 @@ constexpr double kMinPivot = 1e-13;
 
 }  // namespace
 
+Eigen::SparseMatrix<double> InformationOf(const ceres::CRSMatrix& jacobian) {
+  using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+  const Eigen::Map<const Sparse> J(jacobian.num_rows, jacobian.num_cols,
+                                   static_cast<int>(jacobian.values.size()),
+                                   jacobian.rows.data(), jacobian.cols.data(),
+                                   jacobian.values.data());
+  return J.transpose() * J;
+}
+
 SparseInverse::SparseInverse(const Eigen::SparseMatrix<double>& matrix)
     : ldlt_(matrix) {
   if (ldlt_.info() != Eigen::Success) return;

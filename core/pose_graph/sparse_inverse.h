@@ -1,9 +1,14 @@
 #pragma once
 
+#include <ceres/crs_matrix.h>
+
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
 namespace rgbd_pose {
+
+// J^T J of a Jacobian that Ceres has evaluated.
+Eigen::SparseMatrix<double> InformationOf(const ceres::CRSMatrix& jacobian);
 
 // The inverse of a sparse, symmetric, positive definite matrix, but only where
 // its Cholesky factor has entries, and so wherever the matrix itself has: as
