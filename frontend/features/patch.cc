@@ -131,10 +131,7 @@ struct AlignKernel {
     const float energy = sums.squares - sums.grey * sums.grey / Patch::kPixels;
     const float explained = sums.contrast * sums.contrast * patch.energy;
     const float left = std::max(energy - explained, 0.0F) / Patch::kPixels;
-    *result = {true,
-               u,
-               v,
-               sums.contrast,
+    *result = {true, u, v,
                std::sqrt(explained / (explained + left * Patch::kPixels)),
                std::sqrt(left) / sums.contrast};
   }

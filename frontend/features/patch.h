@@ -54,9 +54,8 @@ struct AlignedPatch {
   // shift, or does not match the image. The other members are then not set.
   bool found = false;
 
-  float u = 0.0F;     // px
-  float v = 0.0F;     // px
-  float gain = 0.0F;  // contrast of the image over that of the patch
+  float u = 0.0F;  // px
+  float v = 0.0F;  // px
 
   // Of patch and image, for any gain and bias: 1 = the same.
   float correlation = 0.0F;

@@ -79,7 +79,6 @@ TEST(PatchAlignmentTest, TheSameImageIsFoundWhereItWas) {
   // Rounding of sums of 64 floats.
   EXPECT_NEAR(found.u, kCentre.x(), 1e-4);
   EXPECT_NEAR(found.v, kCentre.y(), 1e-4);
-  EXPECT_NEAR(found.gain, 1.0F, 1e-4);
   EXPECT_NEAR(found.residual, 0.0F, 0.1);
 }
 
@@ -93,9 +92,7 @@ TEST(PatchAlignmentTest, GainAndBiasDoNotMatter) {
         return 125.0 + gain * 0.8 * (Texture(x - shift) - 120.0) + bias;
       });
       SCOPED_TRACE(testing::Message() << gain << " " << bias);
-      const AlignedPatch found = Align(patch, image);
-      ExpectAt(found, kCentre + shift);
-      EXPECT_NEAR(found.gain, 0.8 * gain, 0.05 * gain);
+      ExpectAt(Align(patch, image), kCentre + shift);
     }
   }
 }
