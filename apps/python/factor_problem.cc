@@ -16,6 +16,10 @@
 namespace rgbd_pose {
 namespace {
 
+// A solve ends where a step changes the cost or the parameters by less than
+// this share, or where the gradient, of whitened residuals, is below it.
+constexpr double kTolerance = 1e-12;
+
 // Ceres' problem over the memory of `problem`, which must outlive it.
 std::unique_ptr<ceres::Problem> MakeCeresProblem(FactorProblem* problem) {
   ceres::Problem::Options options;
@@ -120,9 +124,9 @@ FactorSolverSummary SolveFactors(const FactorSolverOptions& options,
   // With more threads Ceres adds up the cost in another order each time.
   solver.num_threads = 1;
   solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.tolerance;
-  solver.parameter_tolerance = options.tolerance;
-  solver.gradient_tolerance = options.tolerance;
+  solver.function_tolerance = kTolerance;
+  solver.parameter_tolerance = kTolerance;
+  solver.gradient_tolerance = kTolerance;
   solver.callbacks.push_back(&end);
   solver.max_num_consecutive_invalid_steps = options.max_iterations + 1;
   ceres::Solver::Summary summary;

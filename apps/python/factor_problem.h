@@ -43,10 +43,6 @@ struct FactorProblem {
 struct FactorSolverOptions {
   int max_iterations = 100;
 
-  // A solve ends where a step changes the cost or the parameters by less than
-  // this share, or where the gradient, of whitened residuals, is below it.
-  double tolerance = 1e-12;
-
   // Asked after each iteration; true ends the solve, whose steps are lost.
   std::function<bool()> is_interrupted = [] { return false; };
 };
