@@ -152,8 +152,6 @@ struct InverseDepthBlock : VectorBlock<1> {
 
 // The blocks of a factor, in their order.
 template <typename... Blocks>
-struct BlockList {
-  static constexpr int kCount = sizeof...(Blocks);  // how many
-};
+struct BlockList {};
 
 }  // namespace rgbd_pose
