@@ -4,20 +4,10 @@
 
 #include <cmath>
 
-#include "core/factors/check_factor.h"
+#include "core/factors/sampler.h"
 
 namespace rgbd_pose {
 namespace {
-
-TEST(CommonDirectionFactorTest, JacobianIsRight) {
-  FactorSampler random(1);
-  CheckFactorOptions options;
-  options.autodiff_tolerance = 1e-12;
-  for (int i = 0; i < 10; ++i) {
-    options.seed = i;
-    EXPECT_EQ(CheckFactor(CommonDirectionFactor::Sample(&random), options), "");
-  }
-}
 
 // Wherever the two bodies are, and whichever way the world lies.
 TEST(CommonDirectionFactorTest, CountsTheAngleInSigmas) {

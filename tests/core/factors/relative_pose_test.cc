@@ -4,20 +4,10 @@
 
 #include <cmath>
 
-#include "core/factors/check_factor.h"
+#include "core/factors/sampler.h"
 
 namespace rgbd_pose {
 namespace {
-
-TEST(RelativePoseFactorTest, JacobianIsRight) {
-  FactorSampler random(1);
-  CheckFactorOptions options;
-  options.autodiff_tolerance = 1e-12;
-  for (int i = 0; i < 10; ++i) {
-    options.seed = i;
-    EXPECT_EQ(CheckFactor(RelativePoseFactor::Sample(&random), options), "");
-  }
-}
 
 // For any error below a half turn, the residual is 2 sin(angle / 2) along the
 // axis of the error, about the axes of `cur`, not along the opposite axis.

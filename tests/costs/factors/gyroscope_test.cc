@@ -2,23 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "core/factors/check_factor.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/imu_path.h"
 
 namespace rgbd_pose {
 namespace {
-
-TEST(GyroscopeFactorTest, JacobianIsRight) {
-  FactorSampler random(1);
-  CheckFactorOptions options;
-  for (int i = 0; i < 10; ++i) {
-    options.seed = i;
-    EXPECT_EQ(CheckFactor(GyroscopeFactor::Sample(&random), options), "");
-  }
-}
 
 // 1,000 runs of noise, with a bias that is not the one of the integration; the
 // accelerometer measures nonsense. Poses in a world of their own.

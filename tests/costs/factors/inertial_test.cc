@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/factors/check_factor.h"
+#include "core/factors/sampler.h"
 #include "tests/support/imu_path.h"
 
 namespace rgbd_pose {
@@ -18,16 +18,6 @@ Residual AtTruth(const InertialFactor& factor, const ImuPath& path, double from,
   factor.Residual(path.Pose(from), path.Velocity(from), b_i, path.Pose(to),
                   path.Velocity(to), b_j, r.data());
   return r;
-}
-
-TEST(InertialFactorTest, JacobianIsRight) {
-  FactorSampler random(1);
-  CheckFactorOptions options;
-  options.samples = 20;
-  for (int i = 0; i < 10; ++i) {
-    options.seed = i;
-    EXPECT_EQ(CheckFactor(InertialFactor::Sample(&random), options), "");
-  }
 }
 
 // A rotation that is a little off, and one that is off by half a turn, come
