@@ -25,21 +25,6 @@ Estimator MakeEstimator(const std::string& loss,
   return Estimator(options, MakeRobustCosts("bidirectional_point", loss));
 }
 
-TEST(EstimatorTest, FindsANoiselessMotionExactly) {
-  RandomWorld world(11);
-  for (const std::string loss : {"none", "huber", "cauchy", "tukey"}) {
-    Estimator estimator = MakeEstimator(loss);
-    const Rigid3d truth = world.Motion(0.2, 0.3);
-    const MotionEstimate estimate =
-        estimator.Estimate(world.Matches(100, 0.0, truth, /*noise=*/false));
-    EXPECT_EQ(estimate.status, EstimateStatus::kOk) << estimate.reason;
-    const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
-    EXPECT_LE(error.angle, 1e-8) << loss;
-    EXPECT_LE(error.translation, 1e-8) << loss;
-    EXPECT_EQ(estimate.num_inliers, 100);
-  }
-}
-
 TEST(EstimatorTest, TheThreeAssembliesAgree) {
   RandomWorld world(12);
   const Rigid3d truth = world.Motion(0.1, 0.1);

@@ -74,6 +74,7 @@ TEST_P(EveryLossTest, FindsANoiselessMotionExactly) {
   constexpr double kSolver = 1e-8;  // limited by the solver's tolerances
   EXPECT_LE(error.angle, kSolver);
   EXPECT_LE(error.translation, kSolver);
+  EXPECT_EQ(estimate.num_inliers, 300);
 }
 
 INSTANTIATE_TEST_SUITE_P(Losses, EveryLossTest,
