@@ -105,19 +105,6 @@ TEST_P(DescriptorFrontendTest, AWrongGuessStillGivesMatches) {
   ExpectMostlyRight(MatchFrom(prev, cur, behind));
 }
 
-TEST_P(DescriptorFrontendTest, ABlackFrameGivesNothing) {
-  const Frame good = dataset_.Read(kPrev);
-  Frame black = good;
-  black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
-  EXPECT_EQ(MatchFrom(good, black, Rigid3d()).matches.size(), 0u);
-  EXPECT_EQ(MatchFrom(black, good, Rigid3d()).matches.size(), 0u);
-  EXPECT_EQ(MatchFrom(black, black, Rigid3d()).matches.size(), 0u);
-  EXPECT_TRUE(Detect(black)->observations.empty());
-  Frame blind = good;
-  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
-  EXPECT_TRUE(Detect(blind)->observations.empty());
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, DescriptorFrontendTest,
                          ::testing::Values("orb", "sift", "akaze"),
                          [](const auto& info) {

@@ -28,6 +28,12 @@ class EveryFrontendTest : public MatchedViews,
     frame.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));
     return frame;
   }
+
+  Frame WithoutDepth() const {
+    Frame frame = dataset_.Read(kPrev);
+    frame.depth = cv::Mat(frame.depth.size(), CV_16UC1, cv::Scalar(0));
+    return frame;
+  }
 };
 
 TEST_P(EveryFrontendTest, FindsFeaturesAgain) {
@@ -108,6 +114,13 @@ TEST_P(EveryFrontendTest, FindsNothingInTheDark) {
   EXPECT_TRUE(Detect(Black())->observations.empty());
   EXPECT_EQ(MatchFrom(Black(), lit, Rigid3d()).matches.size(), 0u);
   EXPECT_EQ(MatchFrom(lit, Black(), Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(Black(), Black(), Rigid3d()).matches.size(), 0u);
+}
+
+TEST_P(EveryFrontendTest, FindsNothingWithoutDepth) {
+  EXPECT_TRUE(Detect(WithoutDepth())->observations.empty());
+  const Frame good = dataset_.Read(kCur);
+  EXPECT_EQ(MatchFrom(WithoutDepth(), good, Rigid3d()).matches.size(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Frontends, EveryFrontendTest,

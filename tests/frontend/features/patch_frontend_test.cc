@@ -107,19 +107,6 @@ TEST_F(PatchFrontendTest, OtherReferencesDoNotMatter) {
   }
 }
 
-TEST_F(PatchFrontendTest, ABlackFrameGivesNothing) {
-  const Frame good = dataset_.Read(kPrev);
-  const Frame black =
-      WithGray(good, cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0)));
-  EXPECT_EQ(MatchFrom(good, black, Rigid3d()).matches.size(), 0u);
-  EXPECT_EQ(MatchFrom(black, good, Rigid3d()).matches.size(), 0u);
-  EXPECT_EQ(MatchFrom(black, black, Rigid3d()).matches.size(), 0u);
-  Frame blind = good;
-  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
-  EXPECT_TRUE(Detect(blind)->observations.empty());
-  EXPECT_EQ(MatchFrom(blind, good, Rigid3d()).matches.size(), 0u);
-}
-
 TEST_F(PatchFrontendTest, AnotherSceneGivesFewMatches) {
   const Frame prev = dataset_.Read(kPrev);
   cv::Mat turned;
