@@ -180,5 +180,72 @@ TEST_F(FeatureValidationTest, AgreementIsWithTheMotion) {
   EXPECT_EQ(OnProbation(validation), (std::vector<int>{2}));
 }
 
+class MovingRegionsTest : public FeatureValidationTest {
+ protected:
+  const CellMask& moving_ = tracked_.moving;
+};
+
+TEST_F(MovingRegionsTest, WhereFeaturesContradictTheMotionSomethingMoves) {
+  for (const bool missing_contradict : {true, false}) {
+    EXPECT_NEAR(MarkMoving(last_, missing_contradict, &tracked_), 0.55, 0.07);
+    EXPECT_FALSE(moving_.Contains(100, 200));
+    EXPECT_TRUE(moving_.Contains(500, 200));
+  }
+  EXPECT_FALSE(moving_.Contains(639, 2000)) << "outside";
+}
+
+TEST_F(MovingRegionsTest, MissingFeaturesAloneAreHiddenBySomething) {
+  // Nothing is found in the right half.
+  found_.Clear();
+  estimate_.is_inlier.clear();
+  estimate_.residual_degrees.clear();
+  for (size_t i = 0; i < last_.observations.size(); ++i) {
+    const Observation& o = last_.observations[i];
+    if (o.u >= 320) continue;
+    found_.Add(last_, i, o);
+    estimate_.is_inlier.push_back(true);
+    estimate_.residual_degrees.push_back(3);
+  }
+  EXPECT_NEAR(MarkMoving(last_, true, &tracked_), 0.55, 0.07);
+  EXPECT_FALSE(moving_.Contains(100, 200));
+  EXPECT_TRUE(moving_.Contains(500, 200));
+  EXPECT_EQ(MarkMoving(last_, false, &tracked_), 1.0);
+  EXPECT_FALSE(moving_.Contains(500, 200)) << "a frontend that finds some only";
+}
+
+TEST_F(MovingRegionsTest, MatchesThatNoCostCouldUseTellNothing) {
+  for (size_t i = 0; i < estimate_.is_inlier.size(); ++i) {
+    if (!estimate_.is_inlier[i]) estimate_.residual_degrees[i] = 0;
+  }
+  EXPECT_EQ(MarkMoving(last_, false, &tracked_), 1.0);
+  EXPECT_FALSE(moving_.Contains(500, 200));
+}
+
+TEST_F(MovingRegionsTest, InliersCoverTheirPartOfTheImage) {
+  const int left = CellsOfInliers(tracked_);
+  EXPECT_NEAR(left, 5 * 8, 8);
+  estimate_.is_inlier.assign(estimate_.is_inlier.size(), true);
+  EXPECT_NEAR(CellsOfInliers(tracked_), 2 * left, 8);
+}
+
+// A barrel lens draws the image's sides inwards. Regions must be marked at the
+// distorted pixels, not where a pinhole would see them.
+TEST_F(MovingRegionsTest, AreWhereTheLensSeesThem) {
+  Camera barrel = kKinect;
+  barrel.k1 = -0.5;
+  TrackingResult seen(barrel);
+  for (size_t i = 0; i < found_.features.size(); ++i) {
+    seen.matches.AddFrom(found_, i);
+  }
+  seen.on_probation = seen.matches;
+  seen.estimate = estimate_;
+  MarkMoving(last_, false, &seen);
+  EXPECT_TRUE(seen.moving.Contains(500, 240));
+  EXPECT_FALSE(seen.moving.Contains(630, 240)) << "beyond what was seen";
+  tracked_.on_probation = found_;
+  MarkMoving(last_, false, &tracked_);
+  EXPECT_TRUE(moving_.Contains(630, 240)) << "of a pinhole";
+}
+
 }  // namespace
 }  // namespace rgbd_pose
