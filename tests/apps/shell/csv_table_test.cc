@@ -4,26 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <string>
 
-#include "core/util/input_error.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
-
-std::string ErrorOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(CsvTable, CellsMayBeQuotedOrEmpty) {
   const TempFolder folder;
@@ -39,12 +27,12 @@ TEST(CsvTable, CellsMayBeQuotedOrEmpty) {
 TEST(CsvTable, BadTablesNameTheLine) {
   const TempFolder folder;
   folder.Write("short.csv", "a,b\n1,2\n3\n");
-  EXPECT_THAT(ErrorOf([&] { CsvTable::Read(folder / "short.csv"); }),
-              HasSubstr("short.csv:3: 1 cells"));
+  ExpectInputError([&] { CsvTable::Read(folder / "short.csv"); },
+                   {"short.csv:3: 1 cells"});
   folder.Write("word.csv", "a,b\n1,2\n3,four\n");
   const CsvTable table = CsvTable::Read(folder / "word.csv");
-  EXPECT_THAT(ErrorOf([&] { table.Numbers("b"); }), HasSubstr("word.csv:3"));
-  EXPECT_THAT(ErrorOf([&] { table.Words("c"); }), HasSubstr("no column 'c'"));
+  ExpectInputError([&] { table.Numbers("b"); }, {"word.csv:3"});
+  ExpectInputError([&] { table.Words("c"); }, {"no column 'c'"});
 }
 
 }  // namespace
