@@ -6,13 +6,14 @@
 
 namespace rgbd_pose {
 
-// later_from_earlier of a camera at constant accelerations, in steps small
-// enough to be accurate to about 1e-6 m in a readout.
-inline Rigid3d ExactMotion(const Twist& twist, double seconds) {
-  constexpr int kSteps = 200;
-  const double step = seconds / kSteps;
+// later_from_earlier of a camera at constant accelerations, composed of short
+// motions, whose translations lack second-order terms: 200 steps are accurate
+// to about 1e-6 m in a readout.
+inline Rigid3d ExactMotion(const Twist& twist, double seconds,
+                           int steps = 200) {
+  const double step = seconds / steps;
   Rigid3d motion;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     motion = twist.After(i * step).MotionDuring(step) * motion;
   }
   return motion;

@@ -6,6 +6,7 @@
 
 #include "core/util/vector_lanes.h"
 #include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/exact_twist.h"
 
 namespace rgbd_pose {
 namespace {
@@ -20,17 +21,7 @@ Twist RandomTwist(RandomWorld* world) {
   return {angular, world->Vector(1.0)};
 }
 
-// The motion composed of many short motions, whose translations lack
-// second-order terms.
-Rigid3d ManyMotions(const Twist& twist, double seconds) {
-  constexpr int kSteps = 2000;
-  const double step = seconds / kSteps;
-  Rigid3d motion;
-  for (int i = 0; i < kSteps; ++i) {
-    motion = twist.After(i * step).MotionDuring(step) * motion;
-  }
-  return motion;
-}
+constexpr int kSteps = 2000;  // of exact motions
 
 TEST(TwistTest, MotionAndTwistAreInverse) {
   RandomWorld world(1);
@@ -98,7 +89,7 @@ TEST(TwistTest, PointsMoveWithAccelerations) {
     constant.linear_acceleration.setZero();
     const Vector3d point = world.Vector(1.0) + Vector3d(0.0, 0.0, 2.0);
     for (const double seconds : {0.03, -0.03}) {
-      const Rigid3d motion = ManyMotions(twist, seconds);
+      const Rigid3d motion = ExactMotion(twist, seconds, kSteps);
       const double error =
           (twist.MovedPoint(point, seconds) - motion * point).norm();
       EXPECT_LT(error, 1.5e-3) << i;
@@ -123,7 +114,7 @@ TEST(TwistTest, PointsMoveToSecondOrder) {
     const Vector3d point = world.Vector(1.0) + Vector3d(0.0, 0.0, 2.0);
     const auto error = [&](double seconds) {
       return (twist.MovedPoint(point, seconds) -
-              ManyMotions(twist, seconds) * point)
+              ExactMotion(twist, seconds, kSteps) * point)
           .norm();
     };
     for (const double seconds : {0.04, -0.04}) {
