@@ -1,12 +1,11 @@
 #pragma once
 
-#include <ceres/crs_matrix.h>
 #include <ceres/problem.h>
 
 #include <memory>
-#include <vector>
 
 #include "core/estimation/motion_cost.h"
+#include "tests/support/problem_sums.h"
 
 namespace rgbd_pose {
 
@@ -27,20 +26,9 @@ inline NormalEquations EvaluateProblem(MotionCost* cost, Assembly assembly,
                                        const LinearizationPoint& origin,
                                        ceres::LossFunction* loss,
                                        MotionVector x) {
-  const auto problem = BuildProblem(cost, assembly, origin, loss, x.data());
-  NormalEquations result;
-  std::vector<double> gradient;
-  ceres::CRSMatrix crs;
-  problem->Evaluate({}, &result.cost, nullptr, &gradient, &crs);
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, 6);
-  for (int row = 0; row < crs.num_rows; ++row) {
-    for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
-      J(row, crs.cols[k]) = crs.values[k];
-    }
-  }
-  result.hessian = J.transpose() * J;
-  result.gradient = Eigen::Map<MotionVector>(gradient.data());
-  return result;
+  const ProblemSums sums =
+      SumsOf(BuildProblem(cost, assembly, origin, loss, x.data()).get());
+  return {sums.hessian, sums.gradient, sums.cost};
 }
 
 }  // namespace rgbd_pose
