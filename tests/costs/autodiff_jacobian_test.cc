@@ -15,6 +15,7 @@
 #include "costs/assembly/cost_of.h"
 #include "costs/cost_list.h"
 #include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/both_jacobians.h"
 
 namespace {
 
@@ -69,10 +70,6 @@ struct WithoutJacobian : ForwardError {
 };
 static_assert(!kHas<JacobianOf, WithoutJacobian>);
 
-template <typename... Types>
-constexpr bool AllHaveJacobians(TypeList<Types...>) {
-  return (kHas<JacobianOf, Types> && ...);
-}
 static_assert(AllHaveJacobians(ResidualTypes()),
               "a cost of this project is differentiated by hand");
 

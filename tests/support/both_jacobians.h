@@ -6,6 +6,8 @@
 #include <string>
 
 #include "core/geometry/motion.h"
+#include "core/util/type_list.h"
+#include "costs/assembly/autodiff_jacobian.h"
 #include "costs/assembly/cost_blocks.h"
 #include "costs/cost_list.h"
 
@@ -37,6 +39,12 @@ struct BothJacobians {
   Eigen::Matrix<double, Residual::kRows, 1> hand_r_, jet_r_;
   Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor> hand_J_, jet_J_;
 };
+
+// Whether all types of a TypeList are differentiated by hand.
+template <typename... Types>
+constexpr bool AllHaveJacobians(TypeList<Types...>) {
+  return (kHas<JacobianOf, Types> && ...);
+}
 
 // A TypeList for TYPED_TEST_SUITE; CostName names its tests after the costs.
 template <typename List>

@@ -16,10 +16,6 @@ namespace {
 constexpr double kTolerance = 1e-12;
 constexpr int kMinSamples = 300;
 
-template <typename... Types>
-constexpr bool AllHaveJacobians(TypeList<Types...>) {
-  return (kHas<JacobianOf, Types> && ...);
-}
 static_assert(AllHaveJacobians(DirectResidualTypes()),
               "a cost of this project is differentiated by hand: give it a "
               "Jacobian");
