@@ -1,14 +1,38 @@
 #pragma once
 
 #include <ceres/crs_matrix.h>
+#include <ceres/loss_function.h>
 #include <ceres/problem.h>
+#include <ceres/solver.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <cmath>
+#include <memory>
 #include <vector>
 
+#include "robust/m_estimator.h"
+
 namespace rgbd_pose {
+
+// A loss so wide that no weight is 0; null for least squares.
+inline std::unique_ptr<ceres::LossFunction> WideLoss(const MEstimator& row,
+                                                     int degrees_of_freedom) {
+  if (row.make == nullptr) return nullptr;
+  return row.make(20.0 * row.Width95(degrees_of_freedom));
+}
+
+// Expects that two solves took the same steps, as their costs show.
+inline void ExpectSameSteps(const ceres::Solver::Summary& actual,
+                            const ceres::Solver::Summary& expected,
+                            double tolerance) {
+  ASSERT_EQ(actual.iterations.size(), expected.iterations.size());
+  for (size_t i = 0; i < expected.iterations.size(); ++i) {
+    EXPECT_NEAR(actual.iterations[i].cost, expected.iterations[i].cost,
+                tolerance * expected.iterations[i].cost)
+        << "iteration " << i;
+  }
+}
 
 // What a Gauss-Newton step over all blocks of a problem depends on.
 struct ProblemSums {

@@ -70,10 +70,8 @@ std::unique_ptr<ceres::Problem> MakeProblem(Way way, const PairWorld& data,
   for (PoseVector& pose : *poses) AddPose(pose.data(), problem.get());
   double* const ref = (*poses)[0].data();
   double* const cur = (*poses)[1].data();
-  const auto make_loss = [&loss]() -> std::unique_ptr<ceres::LossFunction> {
-    if (loss.make == nullptr) return nullptr;
-    // Wide enough for all weights to differ from 0.
-    return loss.make(20.0 * loss.Width95(Type::kDegreesOfFreedom));
+  const auto make_loss = [&loss] {
+    return WideLoss(loss, Type::kDegreesOfFreedom);
   };
   if (way == Way::kPair) {
     problem->AddResidualBlock(new PairFactor({MakeCost<Type>(), make_loss()},
@@ -172,13 +170,7 @@ TEST(PairFactorSolveTest, SolversTakeTheSameSteps) {
           ceres::Solve(options, problem.get(), &summaries[i]);
           EXPECT_TRUE(summaries[i].IsSolutionUsable());
         }
-        ASSERT_EQ(summaries[0].iterations.size(),
-                  summaries[1].iterations.size());
-        for (size_t k = 0; k < summaries[0].iterations.size(); ++k) {
-          EXPECT_NEAR(summaries[0].iterations[k].cost,
-                      summaries[1].iterations[k].cost,
-                      1e-9 * summaries[1].iterations[k].cost);
-        }
+        ExpectSameSteps(summaries[0], summaries[1], 1e-9);
         EXPECT_TRUE(poses[0][1].isApprox(poses[1][1], 1e-9));
         EXPECT_LT(summaries[0].final_cost, summaries[0].initial_cost);
       }
