@@ -205,11 +205,5 @@ TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
   EXPECT_GE(returns, 1) << "the test is vacuous";
 }
 
-TEST(OdometryTest, GivesTheSameBytesTwice) {
-  const SyntheticDataset dataset = Room("xyz", 12);
-  EXPECT_EQ(FormatTrajectory(TrackAll(dataset, "tukey").trajectory),
-            FormatTrajectory(TrackAll(dataset, "tukey").trajectory));
-}
-
 }  // namespace
 }  // namespace rgbd_pose
