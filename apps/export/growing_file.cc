@@ -1,20 +1,11 @@
 #include "apps/export/growing_file.h"
 
 #include <cerrno>
-#include <system_error>
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
-namespace {
-
-// Reason of the last failed call, as "(No space left on device)".
-std::string Reason() {
-  return "(" + std::generic_category().message(errno) + ")";
-}
-
-}  // namespace
 
 GrowingFile::GrowingFile(const std::string& path) : path_(path) {
   if (PathExists(path)) {
@@ -28,7 +19,7 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path) {
                      ": another program is writing it, or a killed one has "
                      "left it; rename it to keep it, or remove it");
   }
-  throw InputError(path + ": cannot be written " + Reason() +
+  throw InputError(path + ": cannot be written " + LastFailure() +
                    "; check that its folder exists and is writable");
 }
 
@@ -53,7 +44,7 @@ void GrowingFile::Publish() {
 }
 
 void GrowingFile::Fail() const {
-  throw InputError(path_ + ": writing failed " + Reason());
+  throw InputError(path_ + ": writing failed " + LastFailure());
 }
 
 }  // namespace rgbd_pose

@@ -5,10 +5,10 @@
 
 #include <cerrno>
 #include <csignal>
-#include <system_error>
 
 #include "core/util/input_error.h"
 #include "core/util/locked_folder.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -56,8 +56,7 @@ void SendThroughPipe(char number) {
 
 CleanEnd::CleanEnd() {
   if (pipe2(pipe_ends, O_CLOEXEC) != 0) {
-    throw InputError("no pipe can be opened (" +
-                     std::generic_category().message(errno) + ")");
+    throw InputError("no pipe can be opened " + LastFailure());
   }
   waiting_ = std::thread([] {
     char number = 0;

@@ -34,21 +34,20 @@ void RefuseFolder(const std::string& path) {
   }
 }
 
-// Reason of the last failed call, as "(No space left on device)".
-std::string Reason() {
-  return "(" + std::generic_category().message(errno) + ")";
-}
-
 std::FILE* OpenToWrite(const std::string& path) {
   std::FILE* file = std::fopen(TemporaryPath(path).c_str(), "wb");
   if (file == nullptr) {
-    throw InputError(path + ": cannot be written " + Reason() +
+    throw InputError(path + ": cannot be written " + LastFailure() +
                      "; check that its folder exists and is writable");
   }
   return file;
 }
 
 }  // namespace
+
+std::string LastFailure() {
+  return "(" + std::generic_category().message(errno) + ")";
+}
 
 bool PathExists(const std::filesystem::path& path) {
   std::error_code error;
@@ -180,11 +179,11 @@ void WriteFileAtomically(const std::string& path, std::string_view content,
       std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
       std::fflush(file) == 0 &&
       (durability == Durability::kCrash || fsync(fileno(file)) == 0);
-  std::string reason = written ? "" : Reason();
-  if (std::fclose(file) != 0 && written) reason = Reason();
+  std::string reason = written ? "" : LastFailure();
+  if (std::fclose(file) != 0 && written) reason = LastFailure();
   if (reason.empty() && std::rename(temporary.c_str(), path.c_str()) == 0)
     return;
-  if (reason.empty()) reason = Reason();
+  if (reason.empty()) reason = LastFailure();
   std::remove(temporary.c_str());
   throw InputError(path + ": writing failed " + reason);
 }
@@ -193,7 +192,7 @@ void SyncFolder(const std::string& path) {
   const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // Some network file systems persist names by themselves and return EINVAL.
   const bool is_done = folder >= 0 && (fsync(folder) == 0 || errno == EINVAL);
-  const std::string reason = is_done ? "" : Reason();
+  const std::string reason = is_done ? "" : LastFailure();
   if (folder >= 0) close(folder);
   if (!is_done) throw InputError(path + ": cannot be synchronised " + reason);
 }

@@ -46,6 +46,9 @@ std::optional<int> ParseWhole(std::string_view text);
 // A time in seconds: as ParseNumber, but not milli- or nanoseconds since 1970.
 double ParseTimestamp(std::string_view word, const std::string& path, int line);
 
+// Why the last call of the system failed, as "(No space left on device)".
+std::string LastFailure();
+
 // Whether the file or folder exists; false, too, if this cannot be determined.
 bool PathExists(const std::filesystem::path& path);
 
