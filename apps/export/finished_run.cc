@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "apps/export/export_format.h"
+#include "apps/export/run_states.h"
 #include "apps/report/report_data.h"
-#include "apps/shell/csv_table.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
@@ -44,10 +44,10 @@ void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
 }
 
 // In frames.csv, segments keep their numbers even if rgbd_slam has joined them.
-bool IsOneSegment(const std::string& keyframes_file) {
-  if (!fs::exists(keyframes_file)) return false;
-  const std::vector<std::string> words =
-      CsvTable::Read(keyframes_file).Words("segment");
+bool IsOneSegment(const FinishedRun& run) {
+  const std::optional<CsvTable> keyframes = KeyframesOf(run);
+  if (!keyframes.has_value()) return false;
+  const std::vector<std::string> words = keyframes->Words("segment");
   return std::set<std::string>(words.begin(), words.end()).size() == 1;
 }
 
@@ -138,7 +138,7 @@ FinishedRun::FinishedRun(const std::string& run_folder,
   const CsvTable table = CsvTable::Read(path / "frames.csv");
   const std::vector<std::string> status = table.Words("status");
   const std::vector<double> segment = table.Numbers("segment");
-  const bool is_one = IsOneSegment(path / "keyframes.csv");
+  const bool is_one = IsOneSegment(*this);
   for (size_t i = 0; i < status.size(); ++i) {
     if (status[i] == "lost") continue;
     frames.push_back(static_cast<int>(i));

@@ -9,7 +9,6 @@
 #include "apps/export/export_format.h"
 #include "apps/export/mcap_writer.h"
 #include "apps/export/run_states.h"
-#include "apps/shell/csv_table.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/files/jpeg_codec.h"
@@ -111,12 +110,10 @@ Json PointCloud(const std::vector<ColoredPoint>& points) {
 }
 
 // The poses of the path that are keyframes of the run's map, if it has one.
-Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
-  if (run.folder.empty()) return {};
-  const std::filesystem::path file =
-      std::filesystem::path(run.folder) / "keyframes.csv";
-  if (!std::filesystem::exists(file)) return {};
-  const std::vector<double> column = CsvTable::Read(file).Numbers("timestamp");
+Trajectory KeyframePath(const FinishedRun& run, const Trajectory& path) {
+  const std::optional<CsvTable> table = KeyframesOf(run);
+  if (!table.has_value()) return {};
+  const std::vector<double> column = table->Numbers("timestamp");
   const std::set<double> times(column.begin(), column.end());
   Trajectory keyframes;
   for (const StampedPose& pose : path) {
@@ -156,7 +153,7 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
       "/tf_static", "FrameTransform", start,
       FrameTransform(kMap, kWorld, UprightFromLevel() * run.level_from_world));
   write("/path", "PosesInFrame", start, PosesInFrame(path));
-  const Trajectory keyframes = KeyframesOf(run, path);
+  const Trajectory keyframes = KeyframePath(run, path);
   if (!keyframes.empty()) {
     write("/keyframes", "PosesInFrame", start, PosesInFrame(keyframes));
   }

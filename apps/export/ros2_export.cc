@@ -1,7 +1,6 @@
 // Exports a run as a recording of ROS 2: an mcap file of messages in CDR that
 // `ros2 bag play` publishes.
 
-#include <filesystem>
 #include <map>
 
 #include "apps/export/export_format.h"
@@ -11,15 +10,6 @@
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
-namespace {
-
-bool HasMap(const FinishedRun& run) {
-  return !run.folder.empty() &&
-         std::filesystem::exists(std::filesystem::path(run.folder) /
-                                 "keyframes.csv");
-}
-
-}  // namespace
 
 std::string ExportRos2(const FinishedRun& run, const ExportOptions& options) {
   const Trajectory path = TimedPath(run, "ROS");
@@ -31,7 +21,7 @@ std::string ExportRos2(const FinishedRun& run, const ExportOptions& options) {
       });
 
   // REP 105: a map may jump, odometry does not.
-  const std::string parent = HasMap(run) ? "map" : "odom";
+  const std::string parent = KeyframesOf(run).has_value() ? "map" : "odom";
   Ros2Writer writer(parent, run.level_from_world);
   writer.WritePath(path[0].timestamp, path);
   for (const CameraState& state : StatesOf(run, path)) {

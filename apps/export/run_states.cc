@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "apps/results/frame_tables.h"
-#include "apps/shell/csv_table.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 
@@ -18,18 +16,17 @@ namespace fs = std::filesystem;
 
 // The covariances of the map's keyframes, by time. Empty without a map, and
 // without those that could not be computed.
-std::map<double, MotionMatrix> KeyframeCovariances(const fs::path& folder) {
+std::map<double, MotionMatrix> KeyframeCovariances(const FinishedRun& run) {
   std::map<double, MotionMatrix> covariances;
-  const fs::path file = folder / "keyframes.csv";
-  if (!fs::exists(file)) return covariances;
-  const CsvTable table = CsvTable::Read(file);
+  const std::optional<CsvTable> table = KeyframesOf(run);
+  if (!table.has_value()) return covariances;
   std::vector<std::vector<double>> columns;
   for (const std::string& name :
        SplitText(std::string(kCovarianceColumns).substr(1), ',')) {
-    columns.push_back(table.Numbers(name));
+    columns.push_back(table->Numbers(name));
   }
-  const std::vector<double> times = table.Numbers("timestamp");
-  for (size_t row = 0; row < table.size(); ++row) {
+  const std::vector<double> times = table->Numbers("timestamp");
+  for (size_t row = 0; row < table->size(); ++row) {
     if (std::isnan(columns[0][row])) continue;
     MotionMatrix& covariance = covariances[times[row]];
     auto column = columns.begin();
@@ -80,6 +77,13 @@ Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by) {
   return path;
 }
 
+std::optional<CsvTable> KeyframesOf(const FinishedRun& run) {
+  if (run.folder.empty()) return std::nullopt;
+  const fs::path file = fs::path(run.folder) / "keyframes.csv";
+  if (!fs::exists(file)) return std::nullopt;
+  return CsvTable::Read(file);
+}
+
 bool IsRosTime(double seconds) {
   return seconds >= 0.0 && seconds <= std::numeric_limits<int32_t>::max();
 }
@@ -100,12 +104,9 @@ Rigid3d UprightFromLevel() {
 
 std::vector<CameraState> StatesOf(const FinishedRun& run,
                                   const Trajectory& path) {
-  std::map<double, MotionMatrix> known;
+  std::map<double, MotionMatrix> known = KeyframeCovariances(run);
   Motions motions(path.size());
-  if (!run.folder.empty()) {
-    known = KeyframeCovariances(run.folder);
-    motions = MotionsOf(run);
-  }
+  if (!run.folder.empty()) motions = MotionsOf(run);
   // The first pose is exact, unless it is in a map that was loaded.
   if (known.empty()) known[path[0].timestamp] = MotionMatrix::Zero();
   CameraStates all;

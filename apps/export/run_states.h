@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/export/camera_states.h"
 #include "apps/export/export_format.h"
+#include "apps/shell/csv_table.h"
 #include "core/evaluation/trajectory.h"
 
 namespace rgbd_pose {
@@ -12,6 +14,9 @@ namespace rgbd_pose {
 // The poses of the first segment of a run. Throws InputError, which names what
 // asks for it, if their times are not from 1970 to 2038, as ROS has them.
 Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by);
+
+// The keyframes of a run's map; nothing without a map.
+std::optional<CsvTable> KeyframesOf(const FinishedRun& run);
 
 // Whether ROS has a time (s), from 1970 to 2038.
 bool IsRosTime(double seconds);
