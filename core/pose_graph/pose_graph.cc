@@ -122,7 +122,7 @@ double Round(double width, int max_iterations, const PoseGraphOptions& options,
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = max_iterations;
-  solver.num_threads = options.threads;
+  solver.num_threads = 1;  // results may differ between numbers
   solver.logging_type = ceres::SILENT;
   // Steps of Gauss and Newton, damped only where one does not reduce the cost:
   // any damping holds the long waves of a long path back. What remains is 1e-12
@@ -213,7 +213,6 @@ std::string PoseGraphOptions::Check() const {
   if (!(max_standard_deviation > 0.0)) {
     return "max_standard_deviation must be positive";
   }
-  if (threads < 1) return "threads must be at least 1";
   return "";
 }
 

@@ -64,9 +64,6 @@ struct PoseGraphOptions {
   // MarginalCovariances.
   double max_standard_deviation = 0.5;
 
-  // Threads of the solver. Results may differ between numbers.
-  int threads = 1;
-
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
