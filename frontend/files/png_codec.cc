@@ -47,9 +47,10 @@ Format FormatOf(const spng_ihdr& header, bool to_color) {
 
 // The file has red first, OpenCV blue.
 cv::Mat WithRedAndBlueSwapped(const cv::Mat& image) {
-  cv::Mat swapped = image;
-  if (image.channels() == 3) cv::cvtColor(image, swapped, cv::COLOR_RGB2BGR);
-  if (image.channels() == 4) cv::cvtColor(image, swapped, cv::COLOR_RGBA2BGRA);
+  if (image.channels() < 3) return image;
+  cv::Mat swapped;
+  cv::cvtColor(image, swapped,
+               image.channels() == 3 ? cv::COLOR_RGB2BGR : cv::COLOR_RGBA2BGRA);
   return swapped;
 }
 
@@ -78,7 +79,11 @@ cv::Mat DecodeAnyPng(const std::string& bytes, const std::string& path,
                 format.type);
   check(spng_decode_image(png.get(), image.data,
                           image.total() * image.elemSize(), format.format, 0));
-  check(spng_decode_chunks(png.get()));  // up to the end of the file
+  check(spng_decode_chunks(png.get()));
+  // The library does not look at the checksum of the last chunk.
+  if (bytes.find("IEND\xAE\x42\x60\x82") == std::string::npos) {
+    check(SPNG_IO_EOF);
+  }
   return WithRedAndBlueSwapped(image);
 }
 

@@ -47,7 +47,7 @@ room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 room costs/factors 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/frame 'core/|frontend/' "$opencv"
-room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|Imf[A-Za-z]+\.h"
+room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|spng\.h|turbojpeg\.h|Imf[A-Za-z]+\.h"
 room frontend/bags 'core/|frontend/' "$opencv|sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|libdeflate\.h"
 room frontend/sources 'core/|frontend/' "$opencv|OpenNI\.h"
 room frontend/features 'core/|frontend/' "$opencv"

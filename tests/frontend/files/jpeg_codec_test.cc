@@ -49,7 +49,7 @@ TEST(JpegCodecTest, OpenCvReadsWhatItWrites) {
     const cv::Mat image = SmoothImage(type);
     const cv::Mat read = ByOpenCv(EncodeJpeg(image, 95), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(read.type(), type);
-    EXPECT_LT(cv::norm(read, image, cv::NORM_L1) / image.total(), 6.0);
+    EXPECT_LT(cv::norm(read, image, cv::NORM_L1) / image.total(), 9.0);
     // Fewer bytes at a lower quality; part of an image is an image.
     EXPECT_LT(EncodeJpeg(image, 50).size(), EncodeJpeg(image, 95).size());
     EXPECT_EQ(DecodeJpeg(EncodeJpeg(image(cv::Rect(5, 7, 16, 8)), 95), "",
