@@ -74,10 +74,11 @@ constexpr bool kHasNear<Factor, std::void_t<decltype(&Factor::Near)>> = true;
 
 // A factor of any type, as its check sees it.
 struct CheckableFactor {
-  std::string name;
-  std::vector<factors::BlockKind> kinds;  // of its blocks
-  std::unique_ptr<ceres::CostFunction> by_hand, by_autodiff;
-  std::vector<std::vector<double>> near;  // see CheckFactorOptions
+  std::string name;                                  // its kName
+  std::vector<factors::BlockKind> kinds;             // of its blocks
+  std::unique_ptr<ceres::CostFunction> by_hand;      // of MakeFactor
+  std::unique_ptr<ceres::CostFunction> by_autodiff;  // of MakeAutodiffFactor
+  std::vector<std::vector<double>> near;             // see CheckFactorOptions
 };
 
 // Makes a factor one that can be checked without its type.

@@ -9,7 +9,7 @@ namespace rgbd_pose {
 
 // A factor that depends on no cost.
 struct ListedFactor {
-  const char* name;
+  const char* name;  // its kName
   // Returns it with random measurements, for a check of its Jacobian.
   CheckableFactor (*sample)(FactorSampler* random);
 };
