@@ -8,6 +8,10 @@
 
 namespace rgbd_pose {
 
+// No image may be wider or higher, in px. More than any camera has; keeps a few
+// wrong bytes from allocating all memory.
+inline constexpr int kMaxImageSide = 1 << 14;
+
 // Reads an image file as it is. An EXIF orientation is never applied, as the
 // rotated image would not match its camera model. Throws InputError, which
 // names the file, if it cannot be read, is no image or is cut off. (Changed

@@ -5,14 +5,12 @@
 #include <memory>
 
 #include "core/util/input_error.h"
+#include "frontend/files/image_file.h"
 
 namespace rgbd_pose {
 namespace {
 
 using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
-
-// More than any camera has; keeps a few wrong bytes from allocating all memory.
-constexpr int kMaxSide = 1 << 14;
 
 // The library fills the missing rest of a file with grey and only warns, as it
 // does about much that harms no image. The markers of a scan and of the end
@@ -37,7 +35,7 @@ cv::Mat DecodeJpeg(const std::string& bytes, const std::string& path,
   const bool has_header =
       tjDecompressHeader3(jpeg.get(), data, bytes.size(), &width, &height,
                           &subsampling, &color_space) == 0 &&
-      width <= kMaxSide && height <= kMaxSide;
+      width <= kMaxImageSide && height <= kMaxImageSide;
   if (!has_header || IsCutOff(bytes)) {
     throw InputError(path + ": is damaged or cut off; copy it again");
   }

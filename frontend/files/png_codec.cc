@@ -2,22 +2,20 @@
 
 #include <spng.h>
 
-#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
 #include "core/util/input_error.h"
+#include "frontend/files/image_file.h"
 
 namespace rgbd_pose {
 namespace {
 
 using Context = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
 
-// More than any camera has, and than any text beside an image takes; keeps a
-// few wrong bytes from allocating all memory.
-constexpr uint32_t kMaxSide = 1 << 14;
-constexpr size_t kMaxChunk = 1 << 24;  // bytes
+// More than any text or table beside an image takes, in bytes.
+constexpr size_t kMaxChunk = 1 << 24;
 
 // zlib's strategies (zlib.h).
 constexpr int kHuffmanOnly = 2, kRuns = 3;
@@ -68,7 +66,7 @@ cv::Mat DecodeAnyPng(const std::string& bytes, const std::string& path,
                      "); copy it again");
   };
   const Context png(spng_ctx_new(0), spng_ctx_free);
-  check(spng_set_image_limits(png.get(), kMaxSide, kMaxSide));
+  check(spng_set_image_limits(png.get(), kMaxImageSide, kMaxImageSide));
   check(spng_set_chunk_limits(png.get(), kMaxChunk, kMaxChunk));
   check(spng_set_crc_action(png.get(), SPNG_CRC_ERROR, SPNG_CRC_DISCARD));
   check(spng_set_png_buffer(png.get(), bytes.data(), bytes.size()));

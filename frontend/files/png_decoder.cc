@@ -22,9 +22,6 @@ struct PngImage {
   std::string compressed;  // if it is decoded here
 };
 
-// More than any camera has; keeps a few wrong bytes from allocating all memory.
-constexpr uint32_t kMaxSide = 1 << 14;
-
 uint32_t BigEndian(const uint8_t* bytes) {
   return static_cast<uint32_t>(bytes[0]) << 24 | bytes[1] << 16 |
          bytes[2] << 8 | bytes[3];
@@ -57,7 +54,8 @@ bool ReadHeader(std::string_view header, PngUse use, PngImage* png) {
   const auto* data = reinterpret_cast<const uint8_t*>(header.data());
   const uint32_t width = BigEndian(data);
   const uint32_t height = BigEndian(data + 4);
-  if (width < 1 || width > kMaxSide || height < 1 || height > kMaxSide) {
+  if (width < 1 || width > kMaxImageSide || height < 1 ||
+      height > kMaxImageSide) {
     return false;
   }
   png->width = static_cast<int>(width);

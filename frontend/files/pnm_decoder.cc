@@ -8,12 +8,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/util/input_error.h"
+#include "frontend/files/image_file.h"
 
 namespace rgbd_pose {
 namespace {
 
-// More than any camera has.
-constexpr int kMaxSide = 1 << 14;
 constexpr int kMaxValue = 65535;
 
 bool IsSpace(char c) {
@@ -55,9 +54,9 @@ cv::Mat DecodePnm(const std::string& bytes, const std::string& path) {
   const int width = NextNumber(&rest), height = NextNumber(&rest),
             largest = NextNumber(&rest);
   const size_t value_size = largest > 255 ? 2 : 1;
-  const bool is_valid = width > 0 && width <= kMaxSide && height > 0 &&
-                        height <= kMaxSide && largest > 0 && !rest.empty() &&
-                        IsSpace(rest.front());
+  const bool is_valid = width > 0 && width <= kMaxImageSide && height > 0 &&
+                        height <= kMaxImageSide && largest > 0 &&
+                        !rest.empty() && IsSpace(rest.front());
   // One space is before the pixels.
   if (!is_valid || rest.size() - 1 < value_size * channels * width * height) {
     throw InputError(path + ": is damaged or cut off; copy it again");
