@@ -33,16 +33,16 @@ enum class PngUse {
 struct DecodedPng {
   cv::Mat image;            // gray or depth; empty: not decoded
   cv::Mat color;            // empty unless requested
-  bool is_damaged = false;  // OpenCV need not be tried
+  bool is_damaged = false;  // another decoder need not be tried
 };
 
 // Decodes the kinds of PNG used in RGB-D recordings by libdeflate, in about
-// half the time of OpenCV, to identical values: three channels or one of 8 bits
-// to gray, one channel of 16 bits to depth. Other kinds are left to OpenCV. A
-// file that begins as a PNG is damaged if it is cut off, if a checksum of a
-// needed chunk is wrong, if a side has more than 16384 pixels or, for the kinds
-// above, if bytes of the rows are missing or invalid. (libpng would write to
-// stderr.) Thread-safe.
+// half the time of libspng, to identical values: three channels or one of 8
+// bits to gray, one channel of 16 bits to depth. Other kinds are left to
+// png_codec.h. A file that begins as a PNG is damaged if it is cut off, if a
+// checksum of a needed chunk is wrong, if a side has more than 16384 pixels or,
+// for the kinds above, if bytes of the rows are missing or invalid.
+// Thread-safe.
 DecodedPng DecodePng(std::string_view bytes, PngUse use);
 
 }  // namespace rgbd_pose
