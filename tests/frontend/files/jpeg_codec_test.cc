@@ -2,41 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <vector>
+#include <string>
 
 #include "tests/support/expect_input_error.h"
+#include "tests/support/image_oracle.h"
 
 namespace rgbd_pose {
 namespace {
 
-cv::Mat SmoothImage(int type) {
-  cv::Mat image(48, 61, type);
-  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 255);
-  cv::blur(image, image, {9, 9});
-  return image;
-}
-
-cv::Mat ByOpenCv(const std::string& file, int flags) {
-  return cv::imdecode(std::vector<char>(file.begin(), file.end()), flags);
-}
-
-std::string EncodedByOpenCv(const cv::Mat& image) {
-  std::vector<uchar> bytes;
-  cv::imencode(".jpg", image, bytes);
-  return {bytes.begin(), bytes.end()};
-}
-
-void ExpectEqual(const cv::Mat& image, const cv::Mat& expected) {
-  ASSERT_EQ(image.size(), expected.size());
-  ASSERT_EQ(image.type(), expected.type());
-  EXPECT_EQ(cv::norm(image, expected, cv::NORM_INF), 0.0);
-}
-
 TEST(JpegCodecTest, ReadsAsOpenCvDoes) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
-    const std::string file = EncodedByOpenCv(SmoothImage(type));
+    const std::string file = EncodedByOpenCv(".jpg", SmoothImage(type));
     ASSERT_TRUE(IsJpeg(file));
     ExpectEqual(DecodeJpeg(file, "", true),
                 ByOpenCv(file, cv::IMREAD_GRAYSCALE));

@@ -2,46 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
-#include <vector>
 
 #include "tests/support/expect_input_error.h"
+#include "tests/support/image_oracle.h"
 
 namespace rgbd_pose {
 namespace {
-
-cv::Mat SmoothImage(int type) {
-  cv::Mat image(48, 61, type);
-  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0,
-                  CV_MAT_DEPTH(type) == CV_16U ? 65535 : 255);
-  cv::blur(image, image, {9, 9});
-  return image;
-}
-
-cv::Mat ByOpenCv(const std::string& file, int flags) {
-  return cv::imdecode(std::vector<char>(file.begin(), file.end()), flags);
-}
-
-std::string EncodedByOpenCv(const cv::Mat& image,
-                            const std::vector<int>& settings = {}) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", image, bytes, settings);
-  return {bytes.begin(), bytes.end()};
-}
-
-void ExpectEqual(const cv::Mat& image, const cv::Mat& expected) {
-  ASSERT_EQ(image.size(), expected.size());
-  ASSERT_EQ(image.type(), expected.type());
-  EXPECT_EQ(cv::norm(image, expected, cv::NORM_INF), 0.0);
-}
 
 TEST(PngCodecTest, ReadsAnyKindAsOpenCvDoes) {
   for (const int type :
        {CV_8UC1, CV_8UC3, CV_8UC4, CV_16UC1, CV_16UC3, CV_16UC4}) {
     SCOPED_TRACE(type);
-    const std::string file = EncodedByOpenCv(SmoothImage(type));
+    const std::string file = EncodedByOpenCv(".png", SmoothImage(type));
     ASSERT_TRUE(IsPng(file));
     ExpectEqual(DecodeAnyPng(file, "", false),
                 ByOpenCv(file, cv::IMREAD_UNCHANGED));
@@ -57,7 +30,8 @@ TEST(PngCodecTest, ReadsAnyKindAsOpenCvDoes) {
 TEST(PngCodecTest, ReadsGreyOfOneBit) {
   cv::Mat image(48, 61, CV_8UC1, cv::Scalar(0));
   image.colRange(10, 30).setTo(255);
-  const std::string file = EncodedByOpenCv(image, {cv::IMWRITE_PNG_BILEVEL, 1});
+  const std::string file =
+      EncodedByOpenCv(".png", image, {cv::IMWRITE_PNG_BILEVEL, 1});
   ExpectEqual(DecodeAnyPng(file, "", false), image);
 }
 
