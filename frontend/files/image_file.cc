@@ -5,6 +5,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/jpeg_codec.h"
+#include "frontend/files/png_codec.h"
 #include "frontend/files/pnm_decoder.h"
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
 #include "frontend/files/png_decoder.h"
@@ -48,10 +49,14 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, bool to_gray,
                      "(PNG, JPEG, PGM, PPM)");
   }
   if (!to_gray) return image;
+  cv::Mat gray = image;
+  if (image.type() == CV_8UC3) {
+    cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
+  } else if (image.type() == CV_8UC1) {
+    image = cv::Mat();
+    cv::cvtColor(gray, image, cv::COLOR_GRAY2BGR);
+  }
   if (color != nullptr) *color = image;
-  if (image.type() != CV_8UC3) return image;
-  cv::Mat gray;
-  cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   return gray;
 }
 
@@ -92,9 +97,8 @@ cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
   return depth;
 }
 
-void WritePngFile(const std::string& path, const cv::Mat& image,
-                  PngPacking packing) {
-  WriteFileAtomically(path, EncodePng(image, packing));
+void WritePngFile(const std::string& path, const cv::Mat& image) {
+  WriteFileAtomically(path, EncodePng(image));
 }
 
 }  // namespace rgbd_pose

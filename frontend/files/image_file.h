@@ -4,8 +4,6 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "frontend/files/png_codec.h"
-
 namespace rgbd_pose {
 
 // No image may be wider or higher, in px. More than any camera has; keeps a few
@@ -32,8 +30,7 @@ cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
 cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path);
 
 // Writes a PNG file completely or not at all. Throws InputError on failure.
-void WritePngFile(const std::string& path, const cv::Mat& image,
-                  PngPacking packing = PngPacking::kUsual);
+void WritePngFile(const std::string& path, const cv::Mat& image);
 
 // The grey level of a colour: 0.299 R + 0.587 G + 0.114 B, rounded. OpenCV's
 // cvtColor gives the same values, so the source of an image does not matter.

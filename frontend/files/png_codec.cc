@@ -17,8 +17,8 @@ using Context = std::unique_ptr<spng_ctx, void (*)(spng_ctx*)>;
 // More than any text or table beside an image takes, in bytes.
 constexpr size_t kMaxChunk = 1 << 24;
 
-// zlib's strategies (zlib.h).
-constexpr int kHuffmanOnly = 2, kRuns = 3;
+// zlib's strategy that only looks for runs of one byte (Z_RLE in zlib.h).
+constexpr int kRuns = 3;
 
 // A format of the decoder and the type of its images.
 struct Format {
@@ -85,13 +85,11 @@ cv::Mat DecodeAnyPng(const std::string& bytes, const std::string& path,
   return WithRedAndBlueSwapped(image);
 }
 
-std::string EncodePng(const cv::Mat& image, PngPacking packing) {
-  const bool is_quick = packing == PngPacking::kQuick;
+std::string EncodePng(const cv::Mat& image) {
   const Context png(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   spng_set_option(png.get(), SPNG_ENCODE_TO_BUFFER, 1);
   spng_set_option(png.get(), SPNG_IMG_COMPRESSION_LEVEL, 1);
-  spng_set_option(png.get(), SPNG_IMG_COMPRESSION_STRATEGY,
-                  is_quick ? kHuffmanOnly : kRuns);
+  spng_set_option(png.get(), SPNG_IMG_COMPRESSION_STRATEGY, kRuns);
   spng_set_option(png.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_SUB);
   spng_ihdr header = {};
   header.width = image.cols;

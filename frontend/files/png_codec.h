@@ -16,12 +16,9 @@ bool IsPng(std::string_view bytes);
 cv::Mat DecodeAnyPng(const std::string& bytes, const std::string& path,
                      bool to_color);
 
-// How a PNG is packed. Both are quick; the second takes half the time of the
-// first, and more room.
-enum class PngPacking { kUsual, kQuick };
-
-// Encodes an image with 1 or 3 (blue, green, red) channels of 8 or 16 bits.
-std::string EncodePng(const cv::Mat& image,
-                      PngPacking packing = PngPacking::kUsual);
+// Encodes an image with 1 or 3 (blue, green, red) channels of 8 or 16 bits,
+// with little compression, as the noise of a sensor hardly has any. Throws
+// InputError for other images.
+std::string EncodePng(const cv::Mat& image);
 
 }  // namespace rgbd_pose

@@ -4,6 +4,7 @@
 
 #include "core/util/format.h"
 #include "frontend/files/image_file.h"
+#include "frontend/files/png_codec.h"
 #include "frontend/files/png_decoder.h"
 
 namespace rgbd_pose {

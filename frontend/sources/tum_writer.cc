@@ -40,11 +40,6 @@ std::string ImagePath(const std::string& kind, double timestamp) {
   return kind + Format("/%.6f.png", timestamp);
 }
 
-void WritePng(const fs::path& path, const cv::Mat& image) {
-  // Sensor noise contains no repetitions worth a search.
-  WritePngFile(path.string(), image, PngPacking::kQuick);
-}
-
 // Changes the colours to have the frame's grey levels when they are read back:
 // a JPEG's grey levels differ from those of its colours by up to a few levels.
 cv::Mat WithGrayOf(const Frame& frame) {
@@ -125,14 +120,14 @@ class ImageWriter {
   explicit ImageWriter(const fs::path& folder) : folder_(folder) {}
 
   void Write(const Frame& frame) {
-    WritePng(folder_ / ImagePath("rgb", frame.timestamp),
-             frame.color.empty() ? frame.gray : WithGrayOf(frame));
+    WritePngFile(folder_ / ImagePath("rgb", frame.timestamp),
+                 frame.color.empty() ? frame.gray : WithGrayOf(frame));
     const double stamp = DepthStamp(frame);
     {
       const std::lock_guard lock(mutex_);
       if (!begun_.insert(stamp).second) return;
     }
-    WritePng(folder_ / ImagePath("depth", stamp), frame.depth);
+    WritePngFile(folder_ / ImagePath("depth", stamp), frame.depth);
   }
 
  private:

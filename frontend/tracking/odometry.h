@@ -168,15 +168,15 @@ class Odometry {
     double left_at = 0.0;  // time stamp of the first new frame, s
   };
 
-  // The stages of a frame, in this order.
-
-  // Sets what is known of its times before its images are looked at.
+  // The stages of Track, in this order. The first sets what is known of the
+  // frame's times before its images are looked at.
   void Begin(const Frame& frame);
   void UpdateInterval(double timestamp);
   void FindPose(const PreparedFrame& frame,
                 const std::optional<Prediction>& prediction,
                 TrackedFrame* result);
-  // Degrades a pose which its own residuals do not contradict.
+  // Degrades a pose whose segment is not yet connected, or whose inflation is
+  // unusual.
   void Judge(TrackedFrame* result);
   // Degrades a frame whose covariance was inflated far more than usual.
   void JudgeInflation(TrackedFrame* result);
@@ -203,7 +203,8 @@ class Odometry {
   // The motion since the last frame as it is expected without looking: at
   // constant velocity, turned by the gyroscope if there is one.
   Rigid3d Expected() const;
-  // Tracks a frame against state_.reference, as TrackingAttempts does.
+  // Tracks a frame against state_.reference from one start after the other, as
+  // far as state_.effort allows. Returns whether that yields a pose.
   bool Try(const PreparedFrame& frame,
            const std::optional<Prediction>& prediction,
            const VelocityPrior* velocity, TrackedFrame* result);

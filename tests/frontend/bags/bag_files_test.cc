@@ -9,7 +9,7 @@
 
 #include "core/util/text_file.h"
 #include "frontend/bags/chunk_codec.h"
-#include "frontend/files/image_file.h"
+#include "frontend/files/png_codec.h"
 #include "tests/frontend/bags/ros2_database.h"
 #include "tests/support/expect_input_error.h"
 

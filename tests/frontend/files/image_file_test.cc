@@ -125,6 +125,22 @@ TEST_F(ImageFileTest, ColourMustHaveEightBits) {
   }
 }
 
+TEST_F(ImageFileTest, GreyImagesHaveThreeColoursIfAskedFor) {
+  const cv::Mat gray = Noise(CV_8UC1);
+  for (const char* name : {"a.png", "a.pgm"}) {
+    SCOPED_TRACE(name);
+    cv::Mat color;
+    const cv::Mat read = ReadGrayImageFile(Write(name, gray), &color);
+    EXPECT_EQ(cv::norm(read, gray, cv::NORM_INF), 0);
+    ASSERT_EQ(color.type(), CV_8UC3);
+    for (const int channel : {0, 1, 2}) {
+      cv::Mat one;
+      cv::extractChannel(color, one, channel);
+      EXPECT_EQ(cv::norm(one, gray, cv::NORM_INF), 0);
+    }
+  }
+}
+
 TEST_F(ImageFileTest, WritesPngFilesAsAWhole) {
   const cv::Mat image = Noise(CV_16UC1);
   WritePngFile(folder_ / "a.png", image);

@@ -39,14 +39,10 @@ TEST(PngCodecTest, OpenCvReadsWhatItWrites) {
   for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1, CV_16UC3}) {
     const cv::Mat image = SmoothImage(type);
     const cv::Mat before = image.clone();
-    for (const PngPacking packing : {PngPacking::kUsual, PngPacking::kQuick}) {
-      ExpectEqual(ByOpenCv(EncodePng(image, packing), cv::IMREAD_UNCHANGED),
-                  image);
-      const cv::Mat part = image(cv::Rect(5, 7, 16, 8));
-      ExpectEqual(ByOpenCv(EncodePng(part, packing), cv::IMREAD_UNCHANGED),
-                  part);
-      ExpectEqual(image, before);
-    }
+    ExpectEqual(ByOpenCv(EncodePng(image), cv::IMREAD_UNCHANGED), image);
+    const cv::Mat part = image(cv::Rect(5, 7, 16, 8));
+    ExpectEqual(ByOpenCv(EncodePng(part), cv::IMREAD_UNCHANGED), part);
+    ExpectEqual(image, before);
   }
 }
 
