@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "apps/compare/compare_sequence.h"
 #include "apps/compare/compare_sweep.h"

@@ -1,5 +1,7 @@
 #include "apps/report/report_page.h"
 
+#include <nlohmann/json.hpp>
+
 namespace rgbd_pose {
 namespace {
 

@@ -1,5 +1,6 @@
 #include "apps/results/calibration_output.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/shell/program.h"

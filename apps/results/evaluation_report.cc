@@ -1,6 +1,7 @@
 #include "apps/results/evaluation_report.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/geometry/twist.h"

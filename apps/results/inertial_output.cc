@@ -1,5 +1,7 @@
 #include "apps/results/inertial_output.h"
 
+#include <nlohmann/json.hpp>
+
 #include "core/util/format.h"
 #include "core/util/units.h"
 

@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <nlohmann/json.hpp>
+
 #include "apps/results/evaluation_report.h"
 #include "apps/results/evaluation_summary.h"
 #include "apps/results/frame_tables.h"

@@ -1,6 +1,7 @@
 #include "apps/results/run_summary.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/util/format.h"

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/results/frame_tables.h"

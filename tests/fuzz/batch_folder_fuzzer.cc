@@ -1,6 +1,8 @@
 // The files of a finished run that a batch reads: done.json and metrics.json,
 // one after the other in the input.
 
+#include <nlohmann/json.hpp>
+
 #include "apps/batch/batch_runs.h"
 #include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,5 +1,7 @@
 // The input of a batch's page: summary.csv.
 
+#include <nlohmann/json.hpp>
+
 #include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"
 

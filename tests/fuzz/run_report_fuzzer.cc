@@ -1,6 +1,8 @@
 // The input of a run's page: frames.csv, metrics.json, config.flags,
 // trajectory.txt and optionally errors.csv, one after the other.
 
+#include <nlohmann/json.hpp>
+
 #include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "apps/results/evaluation_report.h"
 #include "core/geometry/twist.h"
