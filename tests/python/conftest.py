@@ -33,6 +33,10 @@ def camera(sequence):
     return rgbd_pose.Camera.load(sequence / "camera.yaml")
 
 
+def track_all(tracker, frames):
+    return [tracker.track(f.gray, f.depth, f.timestamp) for f in frames]
+
+
 def rotation(axis, angle):
     """(3, 3) by Rodrigues' formula."""
     x, y, z = np.asarray(axis) / np.linalg.norm(axis)
@@ -46,6 +50,13 @@ def rigid(axis, angle, translation):
     result[:3, :3] = rotation(axis, angle)
     result[:3, 3] = translation
     return result
+
+
+# Of the factors that measure a motion, and a direction in the axes of a camera.
+MOTION_COVARIANCE = np.diag([1e-4, 1e-4, 2e-4, 1e-6, 1e-6, 4e-6])
+DOWN = np.array([0.0, 1.0, 0.0])
+# Without a lens.
+KINECT = rgbd_pose.Camera(525.0, 525.0, 319.5, 239.5)
 
 
 def motion():

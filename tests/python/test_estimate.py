@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 import rgbd_pose
-from conftest import add_kinect_noise, motion, move, random_points, rotation
-
-CAMERA = rgbd_pose.Camera(525.0, 525.0, 319.5, 239.5)
+from conftest import (
+    KINECT, add_kinect_noise, motion, move, random_points, rotation,
+)
 
 
 def noisy_matches(count, outlier_share, seed):
     """Points of both frames and which matches are right."""
     rng = np.random.default_rng(seed)
     points = random_points(count, seed)
-    prev = add_kinect_noise(points, rng, CAMERA)
-    cur = add_kinect_noise(move(motion(), points), rng, CAMERA)
+    prev = add_kinect_noise(points, rng, KINECT)
+    cur = add_kinect_noise(move(motion(), points), rng, KINECT)
     wrong = int(outlier_share * count)
     cur[:wrong] = random_points(wrong, seed + 1)
     return prev, cur, np.arange(count) >= wrong
@@ -36,7 +36,7 @@ def error_of(estimate):
 def test_recovers_an_exact_motion(cost, loss):
     prev = random_points(300)
     estimate = rgbd_pose.estimate_motion(
-        prev, move(motion(), prev), CAMERA, cost=cost, loss=loss
+        prev, move(motion(), prev), KINECT, cost=cost, loss=loss
     )
     assert estimate.ok and estimate.status == "ok" and estimate.reason == ""
     # Limited by the solver's tolerance of 1e-9.
@@ -50,7 +50,7 @@ def test_recovers_an_exact_motion(cost, loss):
 
 def test_wrong_matches_are_found():
     prev, cur, right = noisy_matches(500, 0.4, seed=3)
-    estimate = rgbd_pose.estimate_motion(prev, cur, CAMERA)
+    estimate = rgbd_pose.estimate_motion(prev, cur, KINECT)
     assert estimate.ok
     # 1 % of right matches are outliers by definition; three times as many have
     # a probability of 1e-4. Wrong matches agree by chance about as rarely.
@@ -59,7 +59,7 @@ def test_wrong_matches_are_found():
     assert estimate.weights[~right].mean() < 0.02 < 0.5
     assert estimate.weights[right].mean() > 0.7
     assert 0.9 < estimate.sigma < 1.5
-    squares = rgbd_pose.estimate_motion(prev, cur, CAMERA, loss="none")
+    squares = rgbd_pose.estimate_motion(prev, cur, KINECT, loss="none")
     assert (np.linalg.norm(error_of(squares))
             > 10.0 * np.linalg.norm(error_of(estimate)))
 
@@ -68,7 +68,7 @@ def test_errors_fit_the_covariance():
     squares = []
     for seed in range(40):
         prev, cur, _ = noisy_matches(200, 0.2, seed)
-        estimate = rgbd_pose.estimate_motion(prev, cur, CAMERA)
+        estimate = rgbd_pose.estimate_motion(prev, cur, KINECT)
         error = error_of(estimate)
         squares.append(error @ np.linalg.solve(estimate.covariance, error))
     # The mean of 40 chi^2 of 6 degrees has a standard deviation of 0.55.
@@ -105,13 +105,13 @@ def project(camera, points):
 def test_rows_that_are_no_match_keep_their_place(estimate):
     prev, cur, _ = noisy_matches(60, 0.0, seed=7)
     if estimate is rgbd_pose.estimate_motion_pixels:
-        prev, cur = (np.column_stack([project(CAMERA, p), p[:, 2]])
+        prev, cur = (np.column_stack([project(KINECT, p), p[:, 2]])
                      for p in (prev, cur))
-    whole = estimate(prev[10:], cur[10:], CAMERA)
+    whole = estimate(prev[10:], cur[10:], KINECT)
     prev[:10:2, 1] = np.nan
     cur[1:10:4] = np.inf
     cur[3:10:4, 2] = -1.0
-    holed = estimate(prev, cur, CAMERA)
+    holed = estimate(prev, cur, KINECT)
     assert holed.num_rejected == 10
     for name in ("weights", "inliers", "residual_norms", "residual_degrees"):
         values = getattr(holed, name)
@@ -124,11 +124,11 @@ def test_rows_that_are_no_match_keep_their_place(estimate):
 def test_depth_of_zero():
     prev, cur, _ = noisy_matches(60, 0.0, seed=8)
     prev[:20] = 0.0  # cameras give 0 where they measure nothing
-    assert rgbd_pose.estimate_motion(prev, cur, CAMERA).num_rejected == 20
-    pixels = [np.column_stack([project(CAMERA, p + [0, 0, 1e-9]), p[:, 2]])
+    assert rgbd_pose.estimate_motion(prev, cur, KINECT).num_rejected == 20
+    pixels = [np.column_stack([project(KINECT, p + [0, 0, 1e-9]), p[:, 2]])
               for p in (prev, cur)]
     estimate = rgbd_pose.estimate_motion_pixels(
-        *pixels, CAMERA, cost="bidirectional_image"
+        *pixels, KINECT, cost="bidirectional_image"
     )
     assert estimate.num_rejected == 0
     assert estimate.num_used == 60
@@ -171,14 +171,14 @@ def test_degenerate_and_inconsistent():
 def test_initial_guess(guess):
     prev, cur, _ = noisy_matches(200, 0.3, seed=11)
     estimate = rgbd_pose.estimate_motion(
-        prev, cur, CAMERA, robust_schedule="direct", initial_guess=guess
+        prev, cur, KINECT, robust_schedule="direct", initial_guess=guess
     )
     # Ten standard deviations. No motion is too poor a guess (docs/losses.md).
     assert estimate.ok
     deviation = np.sqrt(np.diag(estimate.covariance))
     assert (np.abs(error_of(estimate)) < 10.0 * deviation).all()
     lost = rgbd_pose.estimate_motion(
-        prev, cur, CAMERA, robust_schedule="direct"
+        prev, cur, KINECT, robust_schedule="direct"
     )
     assert not lost.ok or (np.abs(error_of(lost)) > 10.0 * deviation).any()
 
@@ -215,13 +215,13 @@ def test_a_prior_decides_what_matches_leave_open():
 
 def test_pieces_are_passed_on():
     prev, cur, _ = noisy_matches(300, 0.2, seed=17)
-    default = rgbd_pose.estimate_motion(prev, cur, CAMERA)
+    default = rgbd_pose.estimate_motion(prev, cur, KINECT)
     for pieces in (
         {"assembly": "autodiff"},
         {"assembly": "per_match"},
         {"threads": 2},
     ):
-        same = rgbd_pose.estimate_motion(prev, cur, CAMERA, **pieces)
+        same = rgbd_pose.estimate_motion(prev, cur, KINECT, **pieces)
         np.testing.assert_allclose(
             same.cur_from_prev, default.cur_from_prev, atol=1e-9
         )
@@ -232,7 +232,7 @@ def test_pieces_are_passed_on():
         {"depth_noise": "constant"},
         {"max_iterations": 1},
     ):
-        other = rgbd_pose.estimate_motion(prev, cur, CAMERA, **pieces)
+        other = rgbd_pose.estimate_motion(prev, cur, KINECT, **pieces)
         assert (other.cur_from_prev != default.cur_from_prev).any(), pieces
 
 
@@ -246,6 +246,6 @@ def test_depth_noise_is_that_of_the_camera_unless_one_is_chosen():
     ]
     np.testing.assert_array_equal(covariances[0], covariances[1])
     assert (covariances[0] != covariances[2]).any()
-    estimate = rgbd_pose.estimate_motion(prev, cur, CAMERA)  # states none
-    other = rgbd_pose.estimate_motion(prev, cur, CAMERA, depth_noise="khoshelham")
+    estimate = rgbd_pose.estimate_motion(prev, cur, KINECT)  # states none
+    other = rgbd_pose.estimate_motion(prev, cur, KINECT, depth_noise="khoshelham")
     np.testing.assert_array_equal(estimate.covariance, other.covariance)

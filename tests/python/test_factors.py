@@ -5,13 +5,10 @@ import pytest
 
 import rgbd_pose
 from conftest import (
+    DOWN, KINECT, MOTION_COVARIANCE,
     add_kinect_noise, motion, move, raises_one_line, random_points, rigid,
     rotation,
 )
-
-CAMERA = rgbd_pose.Camera(525.0, 525.0, 319.5, 239.5)
-DOWN = np.array([0.0, 1.0, 0.0])
-MOTION_COVARIANCE = np.diag([1e-4, 1e-4, 2e-4, 1e-6, 1e-6, 4e-6])
 
 
 @pytest.mark.parametrize("cost", ["bidirectional_point", "point_to_point"])
@@ -19,18 +16,18 @@ MOTION_COVARIANCE = np.diag([1e-4, 1e-4, 2e-4, 1e-6, 1e-6, 4e-6])
 def test_a_pair_moves_as_estimate_motion_does(cost, loss):
     rng = np.random.default_rng(3)
     points = random_points(300)
-    ref = add_kinect_noise(points, rng, CAMERA)
-    cur = add_kinect_noise(move(motion(), points), rng, CAMERA)
+    ref = add_kinect_noise(points, rng, KINECT)
+    cur = add_kinect_noise(move(motion(), points), rng, KINECT)
     if loss != "none":
         cur[:30] = random_points(30, seed=5)
     # So near that the estimator chooses its weights there, and never again.
     guess = motion() @ rigid([1.0, 1.0, 0.0], 0.004, [0.002, 0.0, -0.002])
     estimate = rgbd_pose.estimate_motion(
-        ref, cur, CAMERA, cost=cost, loss=loss, initial_guess=guess,
+        ref, cur, KINECT, cost=cost, loss=loss, initial_guess=guess,
         robust_schedule="direct",
     )
     factor = rgbd_pose.PairFactor(
-        ref, cur, CAMERA, cost=cost, loss=loss, initial_guess=guess
+        ref, cur, KINECT, cost=cost, loss=loss, initial_guess=guess
     )
     poses = np.array([rgbd_pose.pose_block(np.eye(4)),
                       rgbd_pose.pose_block(np.linalg.inv(guess))])
@@ -64,7 +61,7 @@ def test_a_mounting_is_a_constant_or_a_block():
             problem.add_residual_block(
                 rgbd_pose.PairFactor(
                     points, move(np.linalg.inv(cams[i + 1]) @ cams[0], points),
-                    CAMERA, loss="none", mounting=mounting, **arguments,
+                    KINECT, loss="none", mounting=mounting, **arguments,
                 ),
                 None, [poses[0], poses[i + 1], *blocks],
             )
@@ -103,7 +100,7 @@ def test_cameras_of_a_pair_may_be_mounted_in_different_ways():
                     @ bodies[0] @ body_from_ref_cam)
     points = random_points(20)
     pair = rgbd_pose.PairFactor(
-        points, move(cur_from_ref, points), CAMERA,
+        points, move(cur_from_ref, points), KINECT,
         body_from_ref_cam=body_from_ref_cam,
         body_from_cur_cam=body_from_cur_cam,
     )
@@ -118,8 +115,8 @@ def test_pixels_and_points_give_the_same_pair():
         np.column_stack([525.0 * p[:, :2] / p[:, 2:] + [319.5, 239.5], p[:, 2]])
         for p in (points, moved)
     ]
-    by_points = rgbd_pose.PairFactor(points, moved, CAMERA, loss="none")
-    by_pixels = rgbd_pose.PairFactor.from_pixels(*pixels, CAMERA, loss="none")
+    by_points = rgbd_pose.PairFactor(points, moved, KINECT, loss="none")
+    by_pixels = rgbd_pose.PairFactor.from_pixels(*pixels, KINECT, loss="none")
     blocks = [rgbd_pose.pose_block(np.eye(4)), rgbd_pose.pose_block(np.eye(4))]
     for a, b in zip(by_points.evaluate(blocks)[1], by_pixels.evaluate(blocks)[1]):
         np.testing.assert_allclose(a, b, rtol=1e-6, atol=1e-6 * np.abs(b).max())
@@ -129,9 +126,9 @@ def test_weights_are_those_of_the_association():
     points = random_points(50)
     moved = move(motion(), points)
     arguments = {"cost": "bidirectional_image", "loss": "none"}
-    pair = rgbd_pose.PairFactor(points, moved, CAMERA, **arguments)
+    pair = rgbd_pose.PairFactor(points, moved, KINECT, **arguments)
     near = rgbd_pose.PairFactor(
-        points, moved, CAMERA, initial_guess=motion(), **arguments
+        points, moved, KINECT, initial_guess=motion(), **arguments
     )
     blocks = [rgbd_pose.pose_block(np.eye(4)), rgbd_pose.pose_block(np.eye(4))]
     assert (pair.evaluate(blocks)[0] != near.evaluate(blocks)[0]).any()
@@ -217,7 +214,7 @@ EXACT = {
         lambda: [rgbd_pose.pose_block(BODY)]),
     "LandmarkFactor": (
         lambda: rgbd_pose.LandmarkFactor(
-            CAMERA, POINT[:2] / POINT[2],
+            KINECT, POINT[:2] / POINT[2],
             525.0 * IN_OTHER[:2] / IN_OTHER[2] + [319.5, 239.5]),
         lambda: [rgbd_pose.pose_block(BODY), rgbd_pose.pose_block(OTHER),
                  np.array([0.5])]),

@@ -7,11 +7,7 @@ import numpy as np
 import pytest
 
 import rgbd_pose
-from conftest import run_program
-
-
-def track_all(odometry, dataset):
-    return [odometry.track(f.gray, f.depth, f.timestamp) for f in dataset]
+from conftest import run_program, track_all
 
 
 @pytest.fixture(scope="module")
@@ -55,59 +51,47 @@ def test_tracks_as_the_program_does(
     ).read_bytes()
 
 
-def test_depth_of_another_time_is_moved(tmp_path):
-    folder = tmp_path / "late"
+def late_depth(folder, flag):
+    """The camera and the frames of a sequence whose depth is 15 ms late."""
     run_program(
-        "rgbd_simulate", "--path=handheld", "--frames=4",
-        "--depth_delay=0.015", f"--output={folder}",
+        "rgbd_simulate", "--path=handheld", "--frames=4", f"--{flag}=0.015",
+        f"--output={folder}/late",
     )
-    camera = rgbd_pose.Camera.load(folder / "camera.yaml")
-    frames = list(rgbd_pose.TumDataset(folder, camera))
+    camera = rgbd_pose.Camera.load(folder / "late/camera.yaml")
+    return camera, list(rgbd_pose.TumDataset(folder / "late", camera))
 
-    def last_pose(delays, **settings):
-        odometry = rgbd_pose.Odometry(camera, **settings)
-        for frame, delay in zip(frames, delays):
-            pose = odometry.track(
-                frame.gray, frame.depth, frame.timestamp, depth_delay=delay
-            ).world_from_cam
-        return pose
 
+def last_pose(camera, frames, delay, **settings):
+    odometry = rgbd_pose.Odometry(camera, **settings)
+    for frame in frames:
+        pose = odometry.track(
+            frame.gray, frame.depth, frame.timestamp, depth_delay=delay
+        ).world_from_cam
+    return pose
+
+
+def test_depth_of_another_time_is_moved(tmp_path):
+    camera, frames = late_depth(tmp_path, "depth_delay")
     delays = [frame.depth_delay for frame in frames]
     assert delays == pytest.approx([0.015] * 4, abs=1e-6)
-    as_it_comes = last_pose([0.0] * 4)
-    ignored = last_pose(delays, shutter="none")
+    as_it_comes = last_pose(camera, frames, 0.0)
+    ignored = last_pose(camera, frames, 0.015, shutter="none")
     assert np.array_equal(ignored, as_it_comes)
-    assert np.abs(last_pose(delays) - as_it_comes).max() > 1e-4
+    assert np.abs(last_pose(camera, frames, 0.015) - as_it_comes).max() > 1e-4
 
 
 def test_arrays_are_exposed_as_the_camera_says(tmp_path):
-    folder = tmp_path / "late"
-    run_program(
-        "rgbd_simulate", "--path=handheld", "--frames=4",
-        "--depth_time_offset=0.015", f"--output={folder}",
-    )
-    camera = rgbd_pose.Camera.load(folder / "camera.yaml")
+    camera, frames = late_depth(tmp_path, "depth_time_offset")
     assert camera.depth_time_offset == 0.015
     unaware = rgbd_pose.Camera(
         camera.fx, camera.fy, camera.cx, camera.cy,
         depth_scale=camera.depth_scale,
     )
-    frames = list(rgbd_pose.TumDataset(folder, camera))
     assert [frame.depth_delay for frame in frames] == [0.0] * 4
-
-    def last_pose(camera, depth_delay):
-        odometry = rgbd_pose.Odometry(camera)
-        for frame in frames:
-            pose = odometry.track(
-                frame.gray, frame.depth, frame.timestamp,
-                depth_delay=depth_delay,
-            ).world_from_cam
-        return pose
-
-    told = last_pose(camera, 0.0)
+    told = last_pose(camera, frames, 0.0)
     # A delay given by the camera or by the frame has the same effect.
-    np.testing.assert_array_equal(told, last_pose(unaware, 0.015))
-    assert np.abs(told - last_pose(unaware, 0.0)).max() > 1e-4
+    np.testing.assert_array_equal(told, last_pose(unaware, frames, 0.015))
+    assert np.abs(told - last_pose(unaware, frames, 0.0)).max() > 1e-4
 
 
 def test_settings_are_those_of_the_program(
@@ -261,7 +245,6 @@ def test_time_stamps(dataset, camera):
 
 
 def test_depth_of_one_channel(dataset, camera):
-    f = dataset[0]
     flat = rgbd_pose.Odometry(camera)
     deep = rgbd_pose.Odometry(camera)
     for k in (0, 1):
@@ -306,11 +289,13 @@ def test_wrong_images_are_told_in_one_line(camera, image, depth, words):
     assert "\n" not in str(error.value)
 
 
-def test_unknown_names(camera):
-    with pytest.raises(rgbd_pose.InputError, match="unknown frontend 'x'"):
-        rgbd_pose.Odometry(camera, "x")
-    with pytest.raises(rgbd_pose.InputError, match="unknown policy 'x'"):
-        rgbd_pose.Odometry(camera, on_lost="x")
+@pytest.mark.parametrize("settings, words", [
+    ({"frontend": "x"}, "unknown frontend 'x'"),
+    ({"on_lost": "x"}, "unknown policy 'x'"),
+])
+def test_unknown_names(camera, settings, words):
+    with pytest.raises(rgbd_pose.InputError, match=words):
+        rgbd_pose.Odometry(camera, **settings)
 
 
 def test_dataset(dataset, sequence, camera, tmp_path):

@@ -217,18 +217,8 @@ def with_number(row, column, value):
     (lambda: rgbd_pose.Preintegration(ROWS, 0.5, 1.5),
      "inertial samples from -0.010000 s to 1.010000 s do not cover 0.500000 s "
      "to 1.500000 s"),
-    (lambda: rgbd_pose.Preintegration(ROWS, -0.5, 0.5),
-     "inertial samples from -0.010000 s to 1.010000 s do not cover .*"),
-    (lambda: rgbd_pose.Preintegration(ROWS, 2.0, 3.0),
-     "inertial samples from -0.010000 s to 1.010000 s do not cover .*"),
-    (lambda: rgbd_pose.Preintegration(ROWS[:1], 0.0, 1.0),
-     "inertial samples from -0.010000 s to -0.010000 s do not cover .*"),
     (lambda: rgbd_pose.Preintegration(ROWS[:0], 0.0, 1.0),
      "there are no inertial samples"),
-    (lambda: rgbd_pose.Preintegration(ROWS, 0.5, 0.5),
-     "an inertial interval from 0.500000 s to 0.500000 s has no length"),
-    (lambda: rgbd_pose.Preintegration(ROWS, 0.9, 0.1),
-     "an inertial interval from 0.900000 s to 0.100000 s has no length"),
     (lambda: rgbd_pose.Preintegration(ROWS, 0.5, np.nan),
      "an inertial interval from 0.500000 s to nan s has no length"),
     (lambda: rgbd_pose.Preintegration(

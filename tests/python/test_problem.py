@@ -10,12 +10,9 @@ import pytest
 
 import rgbd_pose
 from conftest import (
+    DOWN, KINECT, MOTION_COVARIANCE,
     motion, move, raises_one_line, random_points, rigid, rotation,
 )
-
-CAMERA = rgbd_pose.Camera(525.0, 525.0, 319.5, 239.5)
-DOWN = np.array([0.0, 1.0, 0.0])
-MOTION_COVARIANCE = np.diag([1e-4, 1e-4, 2e-4, 1e-6, 1e-6, 4e-6])
 
 
 class Loop:
@@ -206,7 +203,7 @@ def test_statuses_of_a_solve():
     assert summary.status == "not_converged" and not summary.ok
     assert summary.reason == "the cost still fell in iteration 1, the last one"
     # A landmark behind the view has no residual.
-    factor = rgbd_pose.LandmarkFactor(CAMERA, [0.0, 0.0], [319.5, 239.5])
+    factor = rgbd_pose.LandmarkFactor(KINECT, [0.0, 0.0], [319.5, 239.5])
     ahead = rigid([0, 1, 0], 0.0, [0, 0, 100])
     blocks = [
         rgbd_pose.pose_block(np.eye(4)), rgbd_pose.pose_block(ahead),
@@ -258,7 +255,7 @@ def slow_problem(pairs):
     """A problem that takes 10 ms or more for each pair, and its poses."""
     points = random_points(50000)
     pair = rgbd_pose.PairFactor(
-        points, move(motion(), points), CAMERA, loss="fair"
+        points, move(motion(), points), KINECT, loss="fair"
     )
     problem = rgbd_pose.Problem()
     poses = np.tile(rgbd_pose.pose_block(np.eye(4)), (pairs + 1, 1))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rgbd_pose
-from conftest import run_program
+from conftest import run_program, track_all
 
 
 @pytest.fixture(scope="module")
@@ -32,10 +32,6 @@ def frames(sequence, camera):
 
 # The map's update for a keyframe is applied within these frames.
 SETTINGS = {"update_delay": 1, "window": 4, "max_pairs": 6}
-
-
-def track_all(slam, frames):
-    return [slam.track(f.gray, f.depth, f.timestamp) for f in frames]
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import rgbd_pose
+from conftest import track_all
 
 PATIENCE = 20.0  # s; longer than any answer takes on a busy machine
 
@@ -23,10 +24,6 @@ def open_view(tracker, **arguments):
         if "without cpp-httplib" in str(error):
             pytest.skip(str(error))
         raise
-
-
-def track(tracker, frames):
-    return [tracker.track(f.gray, f.depth, f.timestamp) for f in frames]
 
 
 def press(page, button):
@@ -74,11 +71,11 @@ class Reader:
 @pytest.mark.parametrize("kind", [rgbd_pose.Odometry, rgbd_pose.Slam])
 def test_shows_all_frames_and_changes_nothing(kind, camera, frames):
     alone, seen = kind(camera), kind(camera)
-    track(alone, frames)
-    track(seen, frames[:3])
+    track_all(alone, frames)
+    track_all(seen, frames[:3])
     page = open_view(seen)
     reader = Reader(page)
-    track(seen, frames[3:])
+    track_all(seen, frames[3:])
     assert reader.waits_for(lambda r: len(r.frames) == len(frames))
     assert len(reader.keyframes) > 0
     for one, other in zip(alone.trajectory, seen.trajectory):
@@ -93,7 +90,7 @@ def test_shows_all_frames_and_changes_nothing(kind, camera, frames):
 def test_finish_ends_the_page(camera, frames):
     slam = rgbd_pose.Slam(camera)
     reader = Reader(open_view(slam))
-    track(slam, frames[:3])
+    track_all(slam, frames[:3])
     slam.finish()
     assert reader.waits_for(lambda r: r.has_ended)
 
@@ -102,9 +99,11 @@ def test_pause_holds_the_next_frame(camera, frames):
     odometry = rgbd_pose.Odometry(camera)
     page = open_view(odometry)
     reader = Reader(page)
-    track(odometry, frames[:1])
+    track_all(odometry, frames[:1])
     press(page, "pause")
-    worker = threading.Thread(target=track, args=(odometry, frames[1:3]), daemon=True)
+    worker = threading.Thread(
+        target=track_all, args=(odometry, frames[1:3]), daemon=True
+    )
     worker.start()
     assert reader.waits_for(lambda r: len(r.frames) == 2)
     worker.join(0.3)
@@ -122,9 +121,9 @@ def test_ctrl_c_ends_a_pause(camera, frames):
     press(page, "pause")
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        track(odometry, frames[:1])
+        track_all(odometry, frames[:1])
     press(page, "resume")
-    track(odometry, frames[1:2])  # the frame before was tracked
+    track_all(odometry, frames[1:2])  # the frame before was tracked
     assert reader.waits_for(lambda r: len(r.frames) == 2)
 
 
@@ -134,7 +133,7 @@ def test_stop_is_for_the_caller_to_see(camera, frames):
     assert not page.is_stopped
     press(page, "stop")
     assert page.is_stopped
-    track(odometry, frames[:2])
+    track_all(odometry, frames[:2])
     assert len(odometry.trajectory[0]) == 2
 
 
