@@ -8,6 +8,11 @@ import pytest
 import rgbd_pose
 
 
+def says_what_makes_it(camera):
+    copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
+    return repr(copy) == repr(camera)
+
+
 def test_keeps_what_it_is_given():
     camera = rgbd_pose.Camera(
         500, 501, 320, 240, 641, 482, (0.1, -0.2, 0.003, 0.004), 1000
@@ -20,8 +25,7 @@ def test_keeps_what_it_is_given():
     np.testing.assert_array_equal(
         camera.matrix, [[500, 0, 320], [0, 501, 240], [0, 0, 1]]
     )
-    copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
-    assert repr(copy) == repr(camera)
+    assert says_what_makes_it(camera)
 
 
 def test_knows_lenses_of_eight_coefficients_and_fisheyes():
@@ -34,8 +38,7 @@ def test_knows_lenses_of_eight_coefficients_and_fisheyes():
     assert rational.distortion == eight
     assert (fisheye.lens, len(fisheye.distortion)) == ("equidistant", 4)
     for camera in (rational, fisheye):
-        copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
-        assert repr(copy) == repr(camera)
+        assert says_what_makes_it(camera)
 
 
 def test_says_when_rows_are_exposed():
@@ -51,8 +54,7 @@ def test_says_when_rows_are_exposed():
         assert f"{name}={value}" in repr(camera)
         with pytest.raises(AttributeError):
             setattr(camera, name, 0.0)
-    copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
-    assert repr(copy) == repr(camera)
+    assert says_what_makes_it(camera)
 
 
 def test_does_not_change():

@@ -95,26 +95,7 @@ def test_finish_ends_the_page(camera, frames):
     assert reader.waits_for(lambda r: r.has_ended)
 
 
-def test_pause_holds_the_next_frame(camera, frames):
-    odometry = rgbd_pose.Odometry(camera)
-    page = open_view(odometry)
-    reader = Reader(page)
-    track_all(odometry, frames[:1])
-    press(page, "pause")
-    worker = threading.Thread(
-        target=track_all, args=(odometry, frames[1:3]), daemon=True
-    )
-    worker.start()
-    assert reader.waits_for(lambda r: len(r.frames) == 2)
-    worker.join(0.3)
-    assert worker.is_alive()
-    press(page, "resume")
-    assert reader.waits_for(lambda r: len(r.frames) == 3)
-    worker.join(PATIENCE)
-    assert not worker.is_alive()
-
-
-def test_ctrl_c_ends_a_pause(camera, frames):
+def test_a_pause_holds_the_next_frame_until_ctrl_c(camera, frames):
     odometry = rgbd_pose.Odometry(camera)
     page = open_view(odometry)
     reader = Reader(page)  # without a page, a pause ends
