@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/estimation/estimator.h"
-#include "core/util/parallel_for.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
@@ -20,16 +19,6 @@ namespace {
 // Several chunks (costs/assembly/packed_sum.h) and a partial one; not a
 // multiple of the number of lanes.
 constexpr int kMany = 30003;
-
-TEST(ParallelForTest, DoesEverythingOnce) {
-  for (const int n : {0, 1, 2, 7}) {
-    for (const int threads : {1, 2, 3, 16}) {
-      std::vector<int> done(n, 0);
-      ParallelFor(n, threads, [&](int i) { ++done[i]; });
-      EXPECT_EQ(done, std::vector<int>(n, 1)) << n << " on " << threads;
-    }
-  }
-}
 
 class DenseSumsTest : public ::testing::TestWithParam<std::string> {
  protected:

@@ -1,5 +1,6 @@
 // The estimator with every loss, scale estimator and schedule.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
 #include "tests/support/motion_error.h"
+#include "tests/support/noise_model.h"
 
 namespace rgbd_pose {
 namespace {
@@ -26,21 +28,6 @@ Estimator EstimatorOfScale(const std::string& loss, const std::string& scale,
   options.schedule = schedule;
   options.scale = FindNamed(ScaleEstimators(), scale)->estimate;
   return Estimator(options, MakeRobustCosts(kCost, loss));
-}
-
-// The same matches with all sigmas of the noise model multiplied by `factor`.
-Correspondences WithSigmas(const Correspondences& matches, double factor) {
-  Correspondences result(matches.camera());
-  for (size_t i = 0; i < matches.size(); ++i) {
-    Observation prev = matches[i].prev;
-    Observation cur = matches[i].cur;
-    for (Observation* o : {&prev, &cur}) {
-      o->sigma_px *= factor;
-      o->sigma_depth *= factor;
-    }
-    result.Add(prev, cur);
-  }
-  return result;
 }
 
 class EveryLossTest : public ::testing::TestWithParam<std::string> {};
@@ -75,6 +62,14 @@ TEST_P(EveryLossTest, FindsANoiselessMotionExactly) {
   EXPECT_LE(error.angle, kSolver);
   EXPECT_LE(error.translation, kSolver);
   EXPECT_EQ(estimate.num_inliers, 300);
+}
+
+TEST_P(EveryLossTest, WeightsLieBetweenZeroAndOne) {
+  const MotionEstimate estimate =
+      EstimatorOfScale(GetParam(), "fixed")
+          .Estimate(RandomWorld(72).Matches(300, 0.2, Rigid3d()));
+  EXPECT_THAT(estimate.weights, testing::Each(testing::AllOf(
+                                    testing::Ge(0.0), testing::Le(1.0))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Losses, EveryLossTest,
@@ -164,9 +159,8 @@ TEST_P(EveryScaleTest, NoiselessMatchesHaveADefinedEstimate) {
     EXPECT_LE(error.translation, kSolver);
     EXPECT_TRUE(estimate.covariance.allFinite());
     EXPECT_TRUE(std::isfinite(estimate.sigma));
-    for (const double weight : estimate.weights) {
-      EXPECT_TRUE(weight >= 0.0 && weight <= 1.0) << weight;
-    }
+    EXPECT_THAT(estimate.weights, testing::Each(testing::AllOf(
+                                      testing::Ge(0.0), testing::Le(1.0))));
   }
 }
 
@@ -279,19 +273,6 @@ TEST(ScaleTest, AScaleThatOnlyFitsWrongMatchesIsNoSuccess) {
             .Estimate(world.Matches(300, 0.2, world.Motion(0.1, 0.1)));
     EXPECT_EQ(estimate.status, EstimateStatus::kInconsistent) << scale;
     EXPECT_NE(estimate.reason, "") << scale;
-  }
-}
-
-TEST(WeightTest, LiesBetweenZeroAndOne) {
-  RandomWorld world(72);
-  const Correspondences matches = world.Matches(300, 0.2, Rigid3d());
-  for (const std::string& loss : MEstimatorNames()) {
-    const MotionEstimate estimate =
-        EstimatorOfScale(loss, "fixed").Estimate(matches);
-    for (const double weight : estimate.weights) {
-      EXPECT_GE(weight, 0.0) << loss;
-      EXPECT_LE(weight, 1.0) << loss;
-    }
   }
 }
 

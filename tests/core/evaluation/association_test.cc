@@ -1,6 +1,5 @@
 #include "core/evaluation/association.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,19 +7,17 @@
 #include <cmath>
 #include <random>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace rgbd_pose {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
 using Pairs = std::vector<std::pair<int, int>>;
-
-constexpr double kMaxDifference = 0.02;
 
 Pairs AssociateToPairs(const std::vector<double>& first,
                        const std::vector<double>& second,
-                       double max_difference = kMaxDifference) {
+                       double max_difference) {
   Pairs pairs;
   for (const auto& [i, j] : Associate(first, second, max_difference)) {
     pairs.emplace_back(i, j);
@@ -53,48 +50,37 @@ Pairs AssociateByDefinition(const std::vector<double>& first,
   return pairs;
 }
 
-TEST(AssociationTest, PairsNearestTimes) {
-  EXPECT_THAT(AssociateToPairs({1.00, 1.10, 1.20}, {1.01, 1.095, 1.19}),
-              ElementsAre(std::pair(0, 0), std::pair(1, 1), std::pair(2, 2)));
-}
-
-TEST(AssociationTest, LeavesOutWhatIsTooFarApart) {
-  EXPECT_THAT(AssociateToPairs({1.0, 2.0, 3.0}, {1.021, 2.019, 5.0}),
-              ElementsAre(std::pair(1, 1)));
-}
-
-TEST(AssociationTest, TakesAPairExactlyAsFarApartAsAllowed) {
-  EXPECT_THAT(AssociateToPairs({1.0}, {1.25}, 0.25),
-              ElementsAre(std::pair(0, 0)));
-  EXPECT_THAT(AssociateToPairs({1.0}, {1.0}, 0.0),
-              ElementsAre(std::pair(0, 0)));
-}
-
-// Entry 1 is nearer to 1.012 than entry 0 is, and therefore gets it.
-TEST(AssociationTest, UsesEachEntryOnceTheBestPairFirst) {
-  EXPECT_THAT(AssociateToPairs({1.000, 1.015}, {1.012}),
-              ElementsAre(std::pair(1, 0)));
-  EXPECT_THAT(AssociateToPairs({1.012}, {1.000, 1.015}),
-              ElementsAre(std::pair(0, 1)));
-}
-
-// Once 1.006 and 1.007 are paired, the entries around them may still be paired.
-TEST(AssociationTest, PairsWhatIsLeftAroundAPair) {
-  EXPECT_THAT(AssociateToPairs({1.000, 1.007}, {1.006, 1.012}),
-              ElementsAre(std::pair(0, 1), std::pair(1, 0)));
-}
-
-TEST(AssociationTest, OfEqualDifferencesTheEarlierPairWins) {
-  EXPECT_THAT(AssociateToPairs({1.0}, {0.75, 1.25}, 0.5),
-              ElementsAre(std::pair(0, 0)));
-  EXPECT_THAT(AssociateToPairs({0.75, 1.25}, {1.0}, 0.5),
-              ElementsAre(std::pair(0, 0)));
-}
-
-TEST(AssociationTest, EmptyListsGiveNoPairs) {
-  EXPECT_THAT(AssociateToPairs({}, {}), IsEmpty());
-  EXPECT_THAT(AssociateToPairs({1.0}, {}), IsEmpty());
-  EXPECT_THAT(AssociateToPairs({}, {1.0}), IsEmpty());
+TEST(AssociationTest, PairsTheNearestThatAreNearEnough) {
+  const struct {
+    const char* what;
+    std::vector<double> first, second;
+    double max_difference;
+    Pairs pairs;
+  } kCases[] = {
+      {"nearest times",
+       {1.00, 1.10, 1.20},
+       {1.01, 1.095, 1.19},
+       0.02,
+       {{0, 0}, {1, 1}, {2, 2}}},
+      {"too far apart", {1.0, 2.0, 3.0}, {1.021, 2.019, 5.0}, 0.02, {{1, 1}}},
+      {"as far apart as allowed", {1.0}, {1.25}, 0.25, {{0, 0}}},
+      {"equal, as is needed", {1.0}, {1.0}, 0.0, {{0, 0}}},
+      {"1.015 is nearer to 1.012", {1.000, 1.015}, {1.012}, 0.02, {{1, 0}}},
+      {"the same in turn", {1.012}, {1.000, 1.015}, 0.02, {{0, 1}}},
+      {"what is left around a pair",
+       {1.000, 1.007},
+       {1.006, 1.012},
+       0.02,
+       {{0, 1}, {1, 0}}},
+      {"the earlier of equal ones", {1.0}, {0.75, 1.25}, 0.5, {{0, 0}}},
+      {"the same in turn", {0.75, 1.25}, {1.0}, 0.5, {{0, 0}}},
+      {"nothing", {}, {}, 0.02, {}},
+      {"nothing to pair with", {1.0}, {}, 0.02, {}},
+      {"nothing to be paired", {}, {1.0}, 0.02, {}}};
+  for (const auto& c : kCases) {
+    EXPECT_EQ(AssociateToPairs(c.first, c.second, c.max_difference), c.pairs)
+        << c.what;
+  }
 }
 
 // Times on a coarse grid, which makes equal times and differences common.
@@ -126,7 +112,8 @@ TEST(AssociationTest, IsFastForEntriesThatAreAllClose) {
   std::vector<double> times(kCount);
   for (int i = 0; i < kCount; ++i) times[i] = i * 1e-7;
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(Associate(times, times, kMaxDifference).size(), times.size());
+  EXPECT_EQ(Associate(times, times, /*max_difference=*/0.02).size(),
+            times.size());
   const std::chrono::duration<double> taken =
       std::chrono::steady_clock::now() - start;
   EXPECT_LT(taken.count(), kTimeLimit);

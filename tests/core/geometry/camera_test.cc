@@ -94,18 +94,14 @@ TEST(CameraTest, UndistortGivesNothingBeyondWhereTheLensFolds) {
 
 TEST(CameraTest, ChecksItsParameters) {
   EXPECT_EQ(Camera{}.Check(), "");
-  Camera camera;
-  camera.fx = std::nan("");
-  EXPECT_NE(camera.Check(), "");
-  camera = Camera{};
-  camera.fy = -480;
-  EXPECT_NE(camera.Check(), "");
-  camera = Camera{};
-  camera.cx = 700;
-  EXPECT_NE(camera.Check(), "");
-  camera = Camera{};
-  camera.height = 0;
-  EXPECT_NE(camera.Check(), "");
+  Camera nan_fx, negative_fy, centre_outside, no_height;
+  nan_fx.fx = std::nan("");
+  negative_fy.fy = -480;
+  centre_outside.cx = 700;
+  no_height.height = 0;
+  for (const Camera& bad : {nan_fx, negative_fy, centre_outside, no_height}) {
+    EXPECT_NE(bad.Check(), "");
+  }
 }
 
 TEST(CameraTest, DoubtsExchangedNumbers) {

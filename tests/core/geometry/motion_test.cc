@@ -25,25 +25,18 @@ TEST(MotionTest, RotationIsZThenYThenX) {
   EXPECT_LE((RotationFromAngles(angles) - expected).norm(), kMotionRounding);
 }
 
+// C is the centre of the current camera in the previous camera: the motion maps
+// it to the origin.
 TEST(MotionTest, MapsPointsAsTheThesisDoes) {
   MotionVector x;
   x << 0.1, 0.2, -0.3, 0.5, -0.6, 0.7;
-  const Vector3d prev(0.3, -0.2, 2.0);
-  const Vector3d expected =
-      RotationFromAngles(x.data()) * (prev - Vector3d(x.tail<3>()));
-  EXPECT_LE(
-      (LinearizationPoint().CurFromPrev(x.data()) * prev - expected).norm(),
-      kMotionRounding);
-}
-
-// C is the centre of the current camera in the previous camera; the motion maps
-// it to the origin of the current camera.
-TEST(MotionTest, CIsTheCurrentCentreInThePreviousFrame) {
-  MotionVector x;
-  x << 0.1, 0.2, -0.3, 0.5, -0.6, 0.7;
-  EXPECT_LE((LinearizationPoint().CurFromPrev(x.data()) * Vector3d(x.tail<3>()))
-                .norm(),
-            kMotionRounding);
+  const Vector3d C = x.tail<3>();
+  for (const Vector3d& prev : {Vector3d(0.3, -0.2, 2.0), C}) {
+    const Vector3d expected = RotationFromAngles(x.data()) * (prev - C);
+    EXPECT_LE(
+        (LinearizationPoint().CurFromPrev(x.data()) * prev - expected).norm(),
+        kMotionRounding);
+  }
 }
 
 TEST(MotionTest, VectorAndRigidAreInverse) {

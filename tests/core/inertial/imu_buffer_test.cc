@@ -61,6 +61,7 @@ TEST(ImuBufferTest, RefusesWhatItDoesNotCover) {
                    {"from 5.000000 s to 5.090000 s do not cover 4.990000 s"});
   ExpectInputError([&] { buffer.Between(5.02, 5.2); }, {"do not cover"});
   ExpectInputError([&] { buffer.Between(5.02, 5.02); }, {"has no length"});
+  ExpectInputError([&] { buffer.Between(5.03, 5.02); }, {"has no length"});
   ExpectInputError([&] { buffer.Between(5.02, NAN); }, {"has no length"});
   ExpectInputError([&] { ImuBuffer().Between(1.0, 2.0); },
                    {"there are no inertial samples"});

@@ -183,15 +183,10 @@ TEST_P(ConsensusTest, IgnoresMatchesWithoutDepth) {
   EXPECT_EQ(actual->inliers, places);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ConsensusTest,
-                         ::testing::Values(Search{"ransac",
-                                                  [](const Correspondences& m) {
-                                                    return FindByRansac(m);
-                                                  }},
-                                           Search{"clique",
-                                                  [](const Correspondences& m) {
-                                                    return FindByClique(m);
-                                                  }}),
+const Search kSearches[] = {
+    {"ransac", [](const Correspondences& m) { return FindByRansac(m); }},
+    {"clique", [](const Correspondences& m) { return FindByClique(m); }}};
+INSTANTIATE_TEST_SUITE_P(All, ConsensusTest, ::testing::ValuesIn(kSearches),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

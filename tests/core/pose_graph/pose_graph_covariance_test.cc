@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <string>
 #include <vector>
 
@@ -13,21 +12,13 @@
 namespace rgbd_pose {
 namespace {
 
-// R_true = Exp(omega) R and C of cam_from_world.
-MotionVector ErrorOfPose(const Rigid3d& estimate, const Rigid3d& truth) {
-  const Eigen::AngleAxisd omega(truth.rotation.inverse() * estimate.rotation);
-  MotionVector error;
-  error << omega.angle() * omega.axis(),
-      truth.translation - estimate.translation;
-  return error;
-}
-
+// The errors of poses are those of the motions from the world to the cameras.
 double Nees(const PoseGraph& graph, const std::vector<Rigid3d>& truth, int pose,
             double factor) {
-  const MotionVector error = ErrorOfPose(graph.pose(pose), truth[pose]);
   const MotionMatrix covariance =
       factor * graph.MarginalCovariances({pose}).at(0);
-  return error.dot(covariance.ldlt().solve(error));
+  return SquaredMahalanobisDistance(graph.pose(pose).Inverse(),
+                                    truth[pose].Inverse(), covariance);
 }
 
 // A loop of independent edges.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "core/pose_graph/graph_problem.h"
@@ -181,13 +182,6 @@ TEST(PoseGraphTest, GraduationDoesNoHarm) {
   }
 }
 
-struct BadCase {
-  const char* name;
-  void (*spoil)(PoseGraph* graph);
-  GraphStatus status;
-  const char* reason;
-};
-
 RelativePose AnyEdge(int ref, int cur) {
   RelativePose edge;
   edge.ref = ref;
@@ -196,87 +190,69 @@ RelativePose AnyEdge(int ref, int cur) {
   return edge;
 }
 
-class BadGraphTest : public ::testing::TestWithParam<BadCase> {};
-
-TEST_P(BadGraphTest, IsAStatusAndMovesNothing) {
-  PoseGraph graph = Circle(5).Graph();
-  // A loop that would move the last pose.
-  graph.AddEdge(AnyEdge(0, 4));
-  const Rigid3d before = graph.pose(4);
-  GetParam().spoil(&graph);
-  const GraphSolution solution = graph.Solve();
-  EXPECT_EQ(solution.status, GetParam().status) << solution.reason;
-  EXPECT_EQ(solution.reason, GetParam().reason);
-  EXPECT_EQ(graph.pose(4).translation, before.translation);
+// An edge from pose 0 to pose 2 that is changed.
+auto EdgeWith(void (*spoil)(RelativePose* edge)) {
+  return [spoil](PoseGraph* graph) {
+    RelativePose edge = AnyEdge(0, 2);
+    spoil(&edge);
+    graph->AddEdge(edge);
+  };
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    , BadGraphTest,
-    ::testing::Values(
-        BadCase{
-            "no_gauge",
-            [](PoseGraph* g) { *g = Circle(5).Graph({}, /*is_fixed=*/false); },
-            GraphStatus::kNotAnchored,
-            "pose 0 is not connected to any fixed pose"},
-        BadCase{"disconnected", [](PoseGraph* g) { g->AddPose(Rigid3d()); },
-                GraphStatus::kNotAnchored,
-                "pose 5 is not connected to any fixed pose"},
-        BadCase{"nan_pose",
-                [](PoseGraph* g) {
-                  Rigid3d pose;
-                  pose.translation.x() = kNan;
-                  g->AddPose(pose);
-                },
-                GraphStatus::kBadInput, "pose 5 is not finite"},
-        BadCase{"no_rotation",
-                [](PoseGraph* g) {
-                  Rigid3d pose;
-                  pose.rotation.coeffs().setZero();
-                  g->AddPose(pose);
-                },
-                GraphStatus::kBadInput,
-                "pose 5 has a quaternion of length 0 instead of 1"},
-        BadCase{"long_quaternion",
-                [](PoseGraph* g) {
-                  RelativePose edge = AnyEdge(0, 2);
-                  edge.cur_from_ref.rotation.coeffs() *= 3.0;
-                  g->AddEdge(edge);
-                },
-                GraphStatus::kBadInput,
-                "the edge from pose 0 to pose 2 has a motion that has a "
-                "quaternion of length 3 instead of 1"},
-        BadCase{"nan_edge",
-                [](PoseGraph* g) {
-                  RelativePose edge = AnyEdge(0, 2);
-                  edge.cur_from_ref.translation.x() = kNan;
-                  g->AddEdge(edge);
-                },
-                GraphStatus::kBadInput,
-                "the edge from pose 0 to pose 2 has a motion that is not "
-                "finite"},
-        BadCase{"no_covariance",
-                [](PoseGraph* g) {
-                  RelativePose edge = AnyEdge(0, 2);
-                  edge.covariance.setZero();
-                  g->AddEdge(edge);
-                },
-                GraphStatus::kBadInput,
-                "the edge from pose 0 to pose 2 has a covariance that is not "
-                "positive definite"},
-        BadCase{"negative_covariance",
-                [](PoseGraph* g) {
-                  RelativePose edge = AnyEdge(0, 2);
-                  edge.covariance(3, 3) = -1.0;
-                  g->AddEdge(edge);
-                },
-                GraphStatus::kBadInput,
-                "the edge from pose 0 to pose 2 has a covariance that is not "
-                "positive definite"},
-        BadCase{"unknown_pose", [](PoseGraph* g) { g->AddEdge(AnyEdge(0, 7)); },
-                GraphStatus::kBadInput,
-                "the edge from pose 0 to pose 7 does not connect two poses of "
-                "the graph"}),
-    [](const auto& info) { return info.param.name; });
+auto PoseWith(void (*spoil)(Rigid3d* pose)) {
+  return [spoil](PoseGraph* graph) {
+    Rigid3d pose;
+    spoil(&pose);
+    graph->AddPose(pose);
+  };
+}
+
+TEST(PoseGraphTest, ABadGraphIsAStatusAndMovesNothing) {
+  const std::string kEdge = "the edge from pose 0 to pose 2 has a ";
+  const struct {
+    std::function<void(PoseGraph*)> spoil;
+    GraphStatus status;
+    std::string reason;
+  } kCases[] = {
+      {[](PoseGraph* g) { *g = Circle(5).Graph({}, /*is_fixed=*/false); },
+       GraphStatus::kNotAnchored, "pose 0 is not connected to any fixed pose"},
+      {[](PoseGraph* g) { g->AddPose(Rigid3d()); }, GraphStatus::kNotAnchored,
+       "pose 5 is not connected to any fixed pose"},
+      {PoseWith([](Rigid3d* pose) { pose->translation.x() = kNan; }),
+       GraphStatus::kBadInput, "pose 5 is not finite"},
+      {PoseWith([](Rigid3d* pose) { pose->rotation.coeffs().setZero(); }),
+       GraphStatus::kBadInput,
+       "pose 5 has a quaternion of length 0 instead of 1"},
+      {EdgeWith([](RelativePose* edge) {
+         edge->cur_from_ref.rotation.coeffs() *= 3.0;
+       }),
+       GraphStatus::kBadInput,
+       kEdge + "motion that has a quaternion of length 3 instead of 1"},
+      {EdgeWith([](RelativePose* edge) {
+         edge->cur_from_ref.translation.x() = kNan;
+       }),
+       GraphStatus::kBadInput, kEdge + "motion that is not finite"},
+      {EdgeWith([](RelativePose* edge) { edge->covariance.setZero(); }),
+       GraphStatus::kBadInput,
+       kEdge + "covariance that is not positive definite"},
+      {EdgeWith([](RelativePose* edge) { edge->covariance(3, 3) = -1.0; }),
+       GraphStatus::kBadInput,
+       kEdge + "covariance that is not positive definite"},
+      {[](PoseGraph* g) { g->AddEdge(AnyEdge(0, 7)); }, GraphStatus::kBadInput,
+       "the edge from pose 0 to pose 7 does not connect two poses of the "
+       "graph"}};
+  for (const auto& bad : kCases) {
+    PoseGraph graph = Circle(5).Graph();
+    // A loop that would move the last pose.
+    graph.AddEdge(AnyEdge(0, 4));
+    const Rigid3d before = graph.pose(4);
+    bad.spoil(&graph);
+    const GraphSolution solution = graph.Solve();
+    EXPECT_EQ(solution.status, bad.status) << bad.reason;
+    EXPECT_EQ(solution.reason, bad.reason);
+    EXPECT_EQ(graph.pose(4).translation, before.translation);
+  }
+}
 
 }  // namespace
 }  // namespace rgbd_pose

@@ -42,8 +42,14 @@ TEST(ParallelForTest, ThrowsWhatATaskThrowsAfterTheOtherThreadsHaveEnded) {
   }
 }
 
-TEST(ParallelForTest, DoesNothingWithoutTasks) {
-  ParallelFor(0, 4, [](int) { FAIL(); });
+TEST(ParallelForTest, TakesAnyNumberOfTasksAndThreads) {
+  for (const int tasks : {0, 1, 2, 7}) {
+    for (const int threads : {1, 2, 3, 16}) {
+      std::vector<int> calls(tasks, 0);
+      ParallelFor(tasks, threads, [&](int i) { ++calls[i]; });
+      EXPECT_EQ(calls, std::vector<int>(tasks, 1)) << threads << " threads";
+    }
+  }
 }
 
 }  // namespace
