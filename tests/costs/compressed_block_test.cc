@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "costs/assembly/compressed_residuals.h"
+#include "tests/support/problem_sums.h"
 
 namespace rgbd_pose {
 namespace {
@@ -68,12 +69,6 @@ std::vector<WaveResidual<K>> Waves() {
   return residuals;
 }
 
-template <int K>
-struct Solved {
-  Eigen::Matrix<double, K, 1> x = Eigen::Matrix<double, K, 1>::Constant(0.3);
-  ceres::Solver::Summary summary;
-};
-
 template <typename Residual>
 void AddTo(ceres::Problem* problem, const std::vector<Residual>& residuals,
            ceres::LossFunction* loss, bool compressed, double* x) {
@@ -104,28 +99,20 @@ ceres::Solver::Summary Solve(ceres::Problem* problem) {
 }
 
 template <int K>
-Solved<K> Solve(const std::vector<WaveResidual<K>>& residuals,
-                ceres::LossFunction* loss, bool compressed) {
-  Solved<K> solved;
-  ceres::Problem problem(KeepingLosses());
-  AddTo(&problem, residuals, loss, compressed, solved.x.data());
-  solved.summary = Solve(&problem);
-  return solved;
-}
-
-template <int K>
 void ExpectTheSameSteps(ceres::LossFunction* loss) {
+  SCOPED_TRACE(K);
   const auto residuals = Waves<K>();
-  const Solved<K> plain = Solve(residuals, loss, false);
-  const Solved<K> compressed = Solve(residuals, loss, true);
-  const auto& expected = plain.summary.iterations;
-  const auto& actual = compressed.summary.iterations;
-  ASSERT_EQ(actual.size(), expected.size()) << "K = " << K;
-  ASSERT_GT(expected.size(), 2u) << "a vacuous problem";
-  for (size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_NEAR(actual[i].cost, expected[i].cost, kSameSum * expected[0].cost);
+  Eigen::Matrix<double, K, 1> x[2];
+  ceres::Solver::Summary summaries[2];
+  for (const bool compressed : {false, true}) {
+    x[compressed].setConstant(0.3);
+    ceres::Problem problem(KeepingLosses());
+    AddTo(&problem, residuals, loss, compressed, x[compressed].data());
+    summaries[compressed] = Solve(&problem);
   }
-  EXPECT_LE((compressed.x - plain.x).norm(), 1e-8) << "K = " << K;
+  ASSERT_GT(summaries[0].iterations.size(), 2u) << "a vacuous problem";
+  ExpectSameSteps(summaries[1], summaries[0], kSameSum);
+  EXPECT_LE((x[1] - x[0]).norm(), 1e-8);
 }
 
 TEST(CompressedBlockTest, TakesTheStepsOfPlainCeres) {
@@ -364,16 +351,12 @@ TEST(CompressedBlockTest, SumsThatAreNotFiniteAreAFailedEvaluation) {
                                   Eigen::Matrix<double, 1, 1>(1.0), 1.0};
   double r[2], J[2];
   EXPECT_TRUE(FactorSums(good, r, J));
-  CompressedSums<1> bad = good;
-  bad.cost = kNan;
-  EXPECT_FALSE(FactorSums(bad, r, static_cast<double*>(nullptr)));
-  EXPECT_FALSE(FactorSums(bad, r, J));
-  bad = good;
-  bad.gradient[0] = kNan;
-  EXPECT_FALSE(FactorSums(bad, r, J));
-  bad = good;
-  bad.hessian(0, 0) = kNan;
-  EXPECT_FALSE(FactorSums(bad, r, J));
+  CompressedSums<1> no_cost = good, no_gradient = good, no_hessian = good;
+  no_cost.cost = no_gradient.gradient[0] = no_hessian.hessian(0, 0) = kNan;
+  EXPECT_FALSE(FactorSums(no_cost, r, static_cast<double*>(nullptr)));
+  for (const auto& bad : {no_cost, no_gradient, no_hessian}) {
+    EXPECT_FALSE(FactorSums(bad, r, J));
+  }
 }
 
 // x - y.

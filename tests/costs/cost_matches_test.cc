@@ -43,30 +43,26 @@ const std::map<std::string, std::vector<int>>& UsedMatches() {
   return used;
 }
 
-TEST(CostMatchesTest, EachCostTakesWhatItCanUse) {
-  const Correspondences matches = MatchesOfAllKinds();
-  const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
-  for (const std::string& name : CostNames()) {
-    const std::unique_ptr<MotionCost> cost = MakeCost(name);
-    ASSERT_TRUE(UsedMatches().count(name)) << name << " is missing above";
-    cost->Bind({&matches, &prior});
-    cost->Associate(Motion());
-    EXPECT_EQ(cost->matches(), UsedMatches().at(name)) << name;
-  }
+// A cost that is bound to these matches and a prior.
+std::unique_ptr<MotionCost> BoundCost(const std::string& name) {
+  static const auto& matches = *new Correspondences(MatchesOfAllKinds());
+  static const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
+  std::unique_ptr<MotionCost> cost = MakeCost(name);
+  cost->Bind({&matches, &prior});
+  cost->Associate(Motion());
+  return cost;
 }
 
 // With depth in one frame only, bidirectional_image has just u and v.
-TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
-  const Correspondences matches = MatchesOfAllKinds();
-  const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
+TEST(CostMatchesTest, EachCostTakesWhatItCanUseWithItsDegrees) {
   for (const std::string& name : CostNames()) {
-    const std::unique_ptr<MotionCost> cost = MakeCost(name);
-    cost->Bind({&matches, &prior});
-    cost->Associate(Motion());
-    std::vector<int> expected(cost->matches().size(),
-                              cost->degrees_of_freedom());
-    if (name == "bidirectional_image") expected = {3, 2, 2, 3};
-    EXPECT_EQ(cost->degrees(), expected) << name;
+    ASSERT_TRUE(UsedMatches().count(name)) << name << " is missing above";
+    const auto cost = BoundCost(name);
+    EXPECT_EQ(cost->matches(), UsedMatches().at(name)) << name;
+    std::vector<int> degrees(cost->matches().size(),
+                             cost->degrees_of_freedom());
+    if (name == "bidirectional_image") degrees = {3, 2, 2, 3};
+    EXPECT_EQ(cost->degrees(), degrees) << name;
   }
 }
 
@@ -103,12 +99,8 @@ TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
 
 // Costs keep no data of an earlier Bind().
 TEST(CostMatchesTest, BindingToNothingLeavesNothing) {
-  const Correspondences matches = MatchesOfAllKinds();
-  const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
   for (const std::string& name : CostNames()) {
-    const std::unique_ptr<MotionCost> cost = MakeCost(name);
-    cost->Bind({&matches, &prior});
-    cost->Associate(Motion());
+    const auto cost = BoundCost(name);
     cost->Bind({});
     cost->Associate(Rigid3d());
     EXPECT_TRUE(cost->matches().empty()) << name;

@@ -20,7 +20,8 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kTrials = 500;
+constexpr int kTrials = 500;       // give the mean a sigma of 0.15
+constexpr int kFewerTrials = 200;  // of 0.24
 constexpr int kCovarianceMatches = 250;
 constexpr double kPriorSigma = 0.002;  // rad, m: about that of the matches
 
@@ -29,7 +30,7 @@ struct Scene {
   const char* losses;
   double missing_depth_share;
   double outlier_share;
-  double tolerance;  // of the mean, which is 6; the mean has a sigma of 0.15
+  double tolerance;  // of the mean, which is 6
 };
 
 std::ostream& operator<<(std::ostream& out, const Scene& scene) {
@@ -50,9 +51,10 @@ class CovarianceTest : public ::testing::TestWithParam<Scene> {};
 // it twice if this were not corrected.
 TEST_P(CovarianceTest, IsHonest) {
   const Scene& scene = GetParam();
+  const int trials = scene.tolerance < 1.0 ? kTrials : kFewerTrials;
   Estimator estimator({}, MakeRobustCosts(scene.costs, scene.losses));
   double nees = 0.0;
-  for (int seed = 0; seed < kTrials; ++seed) {
+  for (int seed = 0; seed < trials; ++seed) {
     RandomWorld world(1000 + seed);
     const Rigid3d truth = world.Motion(0.05, 0.05);
     const Correspondences matches =
@@ -64,8 +66,8 @@ TEST_P(CovarianceTest, IsHonest) {
     ASSERT_TRUE(estimate.ok()) << estimate.reason << ", seed " << seed;
     nees += Nees(estimate, truth);
   }
-  RecordProperty("nees", std::to_string(nees / kTrials));
-  EXPECT_NEAR(nees / kTrials, 6.0, scene.tolerance);
+  RecordProperty("nees", std::to_string(nees / trials));
+  EXPECT_NEAR(nees / trials, 6.0, scene.tolerance);
 }
 
 // If the prior provides nearly all information, the estimate has the prior's

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <array>
 #include <iterator>
 #include <string>
 
 #include "core/estimation/estimator.h"
+#include "core/geometry/motion.h"
 #include "costs/direct_cost_factory.h"
 #include "tests/support/direct_pair.h"
 
@@ -19,13 +19,9 @@ namespace {
 // A sixth of the squared error [omega C] in units of the covariance (NEES / 6).
 // Its mean is 1 if the covariance is correct.
 double Nees(const MotionEstimate& estimate, const Rigid3d& truth) {
-  const Eigen::AngleAxisd turn(truth.rotation *
-                               estimate.cur_from_prev.rotation.conjugate());
-  MotionVector error;
-  error << turn.angle() * turn.axis(),
-      truth.Inverse().translation -
-          estimate.cur_from_prev.Inverse().translation;
-  return error.dot(estimate.covariance.ldlt().solve(error)) / 6.0;
+  return SquaredMahalanobisDistance(estimate.cur_from_prev, truth,
+                                    estimate.covariance) /
+         6.0;
 }
 
 // A guess that converges: 1 cm and 0.3 degrees off, in varying directions.

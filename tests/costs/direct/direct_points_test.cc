@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+#include "frontend/frame/image_pyramid.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -32,16 +34,9 @@ struct PaintedFrame {
     camera.cy = 0.55 * height;
     camera.width = width;
     camera.height = height;
-    Camera half = camera;
-    half.fx /= 2.0;
-    half.fy /= 2.0;
-    half.cx = (camera.cx - 0.5) / 2.0;
-    half.cy = (camera.cy - 0.5) / 2.0;
-    half.width /= 2;
-    half.height /= 2;
-    view.levels = {
-        {{gray.data(), width, height, width}, camera},
-        {{half_gray.data(), width / 2, height / 2, width / 2}, half}};
+    view.levels = {{{gray.data(), width, height, width}, camera},
+                   {{half_gray.data(), width / 2, height / 2, width / 2},
+                    CameraOfLevel(camera, 1)}};
     view.depth = {depth.data(), width, height, width};
     view.depth_scale = kUnitsPerMetre;
     view.depth_noise.constant = 0.0;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "costs/cost_list.h"
-#include "frontend/simulation/synthetic_path.h"
 #include "tests/support/both_jacobians.h"
 #include "tests/support/direct_columns.h"
+#include "tests/support/rolling_frame.h"
 
 namespace rgbd_pose {
 namespace {
@@ -24,24 +24,12 @@ SyntheticOptions Rolling(bool is_distorted) {
   return options;
 }
 
-// The path's velocity at the time stamp.
-Twist TrueTwist() {
-  constexpr double kStep = 1e-3;  // s
-  const SyntheticOptions options = SmallImages();
-  const SyntheticPath path = FindSyntheticPath(options.path);
-  const double t = kCur / options.rate_hz;
-  const double duration = (options.frames - 1) / options.rate_hz;
-  return TwistOf(
-      path(t + kStep, duration).Inverse() * path(t - kStep, duration),
-      2.0 * kStep);
-}
-
 // The previous frame is exposed at one moment, as references are.
 DirectPair RollingPair(bool is_distorted, bool knows_twist) {
   const SyntheticDataset global(SmallImages(is_distorted));
   DirectPair pair(global, kPrev, kCur);
   pair.cur.frame = SyntheticDataset(Rolling(is_distorted)).Read(kCur);
-  if (knows_twist) pair.cur.frame.twist = TrueTwist();
+  if (knows_twist) pair.cur.frame.twist = TwistOfPath(kCur, SmallImages());
   pair.cur.Build();
   return pair;
 }

@@ -8,6 +8,7 @@
 
 #include "core/util/vector_lanes.h"
 #include "costs/cost_list.h"
+#include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
 #include "tests/support/exact_twist.h"
 
@@ -63,6 +64,7 @@ TEST(MoveToRowTest, IsWhereIterationEnds) {
     for (const Shutter& shutter : kShutters) {
       for (const Twist& twist : kTwists) {
         double farthest = 0.0;
+        int count = 0;
         for (const Vector3d& point : Points(camera)) {
           Vector3d moved;
           MoveToRow(camera, camera.MakeLens(), shutter, twist, point.data(),
@@ -74,9 +76,10 @@ TEST(MoveToRowTest, IsWhereIterationEnds) {
                 point, shutter.RowTime(pixel.y(), camera.height)));
           }
           EXPECT_LT((camera.Project(moved) - pixel).norm(), kPixelTolerance);
+          farthest = std::max(farthest, (pixel - at_stamp).norm());
+          if (count++ % 5 != 0) continue;  // the exact way takes long
           EXPECT_LT((ExactlySeen(camera, shutter, twist, point) - pixel).norm(),
                     kPixelTolerance);
-          farthest = std::max(farthest, (pixel - at_stamp).norm());
         }
         EXPECT_GT(farthest, 1.0) << "nothing moves";
       }
@@ -87,13 +90,7 @@ TEST(MoveToRowTest, IsWhereIterationEnds) {
 // A level of half the height takes twice as long for each row.
 TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
   const Camera camera = TestCamera(TestLens::kNone);
-  Camera half = camera;
-  half.width /= 2;
-  half.height /= 2;
-  half.fx /= 2.0;
-  half.fy /= 2.0;
-  half.cx = (camera.cx - 0.5) / 2.0;
-  half.cy = (camera.cy - 0.5) / 2.0;
+  const Camera half = CameraOfLevel(camera, 1);
   for (const Vector3d& point : Points(camera)) {
     Vector3d moved, moved_there;
     MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2], point.data(),

@@ -40,11 +40,11 @@ TEST(InertialFactorTest, RotationGrowsUpToAHalfTurn) {
 }
 
 // The whitened residual at the true states, over poses, velocities, biases and
-// gravity: 1,000 runs with errors of a sensor whose walk counts, integrated
+// gravity: 300 runs with errors of a sensor whose walk counts, integrated
 // with a bias that is not the true one.
 TEST(InertialFactorTest, IsOneSigmaAtTheTruth) {
   constexpr double kRate = 200.0, kFrom = 0.3, kTo = 0.8;
-  constexpr int kRuns = 1000;
+  constexpr int kRuns = 300;
   const ImuPath path;
   const ImuNoise noise = {3e-4, 2e-3, 2e-3, 2e-2};
   ImuBiasVector bias, assumed;
