@@ -63,15 +63,35 @@ std::string BadInputTest::Fill(std::string text) const {
   return text;
 }
 
+void BadInputTest::Renew() const {
+  fs::remove_all(Spoiled().path);
+  fs::remove_all(folder_ / "out");
+  fs::copy(folder_ / "good", Spoiled().path, fs::copy_options::recursive);
+}
+
 void BadInputTest::ExpectEach(const std::string& command,
                               const std::vector<BadInput>& rows) const {
   for (const BadInput& row : rows) {
     SCOPED_TRACE(row.name);
-    fs::remove_all(Spoiled().path);
-    fs::remove_all(folder_ / "out");
-    fs::copy(folder_ / "good", Spoiled().path, fs::copy_options::recursive);
+    Renew();
     if (row.spoil) row.spoil(Spoiled());
     Expect(Fill(command + row.words), row);
+  }
+}
+
+void BadInputTest::ExpectRefused(
+    const std::string& command, const std::vector<BadWords>& rows,
+    const std::function<void(const SpoiledSequence&)>& spoil) const {
+  for (const BadWords& row : rows) {
+    ExpectEach(command, {{row.words, spoil, row.words, 2, row.message}});
+  }
+}
+
+void BadInputTest::ExpectNeeded(const std::string& command,
+                                const std::vector<std::string>& flags) const {
+  for (const std::string& flag : flags) {
+    const std::string message = flag + " is needed";
+    ExpectEach(command, {{message, nullptr, flag + "=", 1, message}});
   }
 }
 

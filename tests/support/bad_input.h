@@ -54,6 +54,12 @@ struct BadInput {
   std::string message;  // in the single line on stderr, with {dir} and {seq}
 };
 
+// Words that a program refuses, and what it says of them.
+struct BadWords {
+  std::string words;
+  std::string message;
+};
+
 // Runs the rows of tables and checks what programs guarantee: the exit code,
 // one line on stderr with the program's name, complete results or none.
 class BadInputTest : public testing::Test {
@@ -64,11 +70,25 @@ class BadInputTest : public testing::Test {
   void ExpectEach(const std::string& command,
                   const std::vector<BadInput>& rows) const;
 
+  // Expects that each of these words, added to `command`, is bad input of a
+  // program whose sequence is good, or changed by `spoil`.
+  void ExpectRefused(
+      const std::string& command, const std::vector<BadWords>& rows,
+      const std::function<void(const SpoiledSequence&)>& spoil = nullptr) const;
+
+  // Expects that each of these flags is needed, where it is given without
+  // value.
+  void ExpectNeeded(const std::string& command,
+                    const std::vector<std::string>& flags) const;
+
   // Replaces {dir} and {seq}.
   std::string Fill(std::string text) const;
 
   // rgbd_odometry with the sequence, its camera and {dir}/out as the output.
   static std::string Odometry();
+
+  // Puts the good sequence in {seq} and removes {dir}/out.
+  void Renew() const;
 
   SpoiledSequence Spoiled() const { return {folder_ / "seq"}; }
 

@@ -17,6 +17,16 @@ struct RunResult {
   std::string err;
 };
 
+// How often a word is in a text, such as a program's output.
+inline int CountOf(const std::string& word, const std::string& text) {
+  int count = 0;
+  for (size_t at = 0; (at = text.find(word, at)) != std::string::npos;
+       at += word.size()) {
+    ++count;
+  }
+  return count;
+}
+
 // Runs a shell command with empty input; stores its output in `folder`
 // meanwhile.
 inline RunResult RunCommand(const std::string& command,

@@ -103,16 +103,23 @@ TEST_F(BatchListTest, PathsWithSpacesAreInQuotationMarks) {
 
 TEST_F(BatchListTest, BadLinesAreNamed) {
   ExpectRefused("# nothing\n", {"list.txt", "lists no sequences"});
-  ExpectRefused("../data/a\n../data/d\n", {"list.txt:2", "data/d"});
-  ExpectRefused("../data/file\n", {"list.txt:1", "data/file"});
-  ExpectRefused("../data/x*\n", {"list.txt:1", "x*"});
-  ExpectRefused("../data/a tum_fr1 5\n", {"list.txt:1", "has 3"});
+  ExpectRefused("../data/a\n../data/d\n",
+                {"list.txt:2: no such folder: ../data/d"});
+  ExpectRefused("../data/file\n", {"list.txt:1: no such folder: ../data/file"});
+  ExpectRefused("../data/x*\n", {"list.txt:1: no such folder: ../data/x*"});
+  ExpectRefused(
+      "../data/a tum_fr1 5\n",
+      {"list.txt:1: needs one or two columns (folder camera), has 3"});
   ExpectRefused("../data/a kinnect\n", {"list.txt:1", "kinnect", "tum_fr1"});
   ExpectRefused("../other/a\n", {"list.txt:1", "other/a/camera.yaml"});
   ExpectRefused("../data/a\n\n../other/a tum_fr1\n",
-                {"list.txt:3", "'a'", "line 1"});
+                {"list.txt:3: sequence name 'a' is already used in line 1"});
   ExpectRefused("../data/*\n../data/a\n", {"list.txt:2", "'a'", "line 1"});
-  ExpectInputError([this] { ReadSequenceList(folder_ / "none"); }, {"none"});
+  folder_.Write("data/.hidden/rgb.txt", "");
+  ExpectRefused("../data/.hidden tum_fr1\n",
+                {"list.txt:1: '.hidden' is not a valid name"});
+  ExpectInputError([this] { ReadSequenceList(folder_ / "none"); },
+                   {folder_ / "none: cannot be opened"});
 }
 
 }  // namespace

@@ -84,31 +84,22 @@ TEST(BatchPlanTest, TheHashDependsOnAllButRepeats) {
 }
 
 TEST(BatchPlanTest, RefusesNamesThatAreNotThere) {
-  ExpectInputError(
-      [] {
-        ParseGrid({"magic", "huber", "klt"}, 1);
-      },
-      {"--costs", "'magic'", "bidirectional_point"});
-  ExpectInputError(
-      [] {
-        ParseGrid({"epipolar+magic", "huber", "klt"}, 1);
-      },
-      {"--costs", "'magic'"});
-  ExpectInputError(
-      [] {
-        ParseGrid({"epipolar", "huber,", "klt"}, 1);
-      },
-      {"--losses", "''"});
-  ExpectInputError(
-      [] {
-        ParseGrid({"epipolar", "huber", "klt,klt"}, 1);
-      },
-      {"--frontends", "'klt'", "twice"});
-  ExpectInputError(
-      [] {
-        ParseGrid({"epipolar", "huber", "klt"}, 0);
-      },
-      {"--repeats"});
+  const struct {
+    std::vector<std::string> lists;  // costs, losses and frontends
+    int repeats;
+    std::vector<std::string> message_parts;
+  } kCases[] = {
+      {{"magic", "huber", "klt"},
+       1,
+       {"--costs", "'magic'", "bidirectional_point"}},
+      {{"epipolar+magic", "huber", "klt"}, 1, {"--costs", "'magic'"}},
+      {{"epipolar", "huber,", "klt"}, 1, {"--losses", "''"}},
+      {{"epipolar", "huber", "magic"}, 1, {"--frontends: unknown"}},
+      {{"epipolar", "huber", "klt,klt"}, 1, {"--frontends", "'klt'", "twice"}},
+      {{"epipolar", "huber", "klt"}, 0, {"--repeats"}}};
+  for (const auto& c : kCases) {
+    ExpectInputError([&] { ParseGrid(c.lists, c.repeats); }, c.message_parts);
+  }
 }
 
 }  // namespace

@@ -26,42 +26,43 @@ std::string WithFullDisk(int blocks, const std::string& command) {
 }
 
 TEST_F(BadInputTest, OutputsThatCannotBe) {
-  const auto file = [](const Seq& seq) { seq.Write("file", "mine"); };
   constexpr char kOwn[] = "is in the recording's own folder {seq}; choose one";
+  ExpectRefused(
+      Odometry(),
+      {
+          {"--output={dir}/small.yaml/out",
+           "--output: {dir}/small.yaml/out cannot be created"},
+          {"--output={dir}/small.yaml",
+           "--output: {dir}/small.yaml cannot be created"},
+          {"--output=/proc/none", "--output: /proc/none cannot be created"},
+          {"--output={seq}", kOwn},
+          {"--output={dir}/./seq/", kOwn},
+          {"--output={seq}/runs/out", kOwn},
+          {"--save_cloud={seq}/none/cloud.ply",
+           "{seq}/none/cloud.ply: cannot be written (No such file"},
+          {"--save_cloud={seq}",
+           "{seq}: a point cloud needs the extension .ply"},
+          {"--save_cloud={seq}/groundtruth.txt",
+           "{seq}/groundtruth.txt: a point cloud needs the extension .ply"},
+          {"--save_mesh={dir}/mesh.obj",
+           "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
+          {"--min_depth=4.2 --save_mesh={dir}/mesh.ply",
+           "--voxel or --max_depth: "},
+          {"--save_cloud={dir}/a.ply --save_mesh={dir}/a.ply",
+           "--save_cloud and --save_mesh are the same file"},
+          {"--record={dir}/a.bag",
+           "--record={dir}/a.bag: the name of a recording for ROS 2 must end "
+           "in .mcap"},
+          {"--record={dir}/none/a.mcap",
+           "{dir}/none/a.mcap: cannot be written (No such file"},
+          {"--record={seq}/a.mcap",
+           "--record={seq}/a.mcap: is in the recording's own folder {seq}"},
+      });
   ExpectEach(
       Odometry(),
       {
-          {"below a file", nullptr, "--output={dir}/small.yaml/out", 2,
-           "--output: {dir}/small.yaml/out cannot be created"},
-          {"a file", nullptr, "--output={dir}/small.yaml", 2,
-           "--output: {dir}/small.yaml cannot be created"},
-          {"the recording itself", nullptr, "--output={seq}", 2, kOwn},
-          {"the recording by a detour", nullptr, "--output={dir}/./seq/", 2,
-           kOwn},
-          {"within the recording", nullptr, "--output={seq}/runs/out", 2, kOwn},
           {"beside the recording, with its name", nullptr, "--output={seq}_run",
            0, ""},
-          {"where none can be made", nullptr, "--output=/proc/none", 2,
-           "--output: /proc/none cannot be created"},
-          {"the cloud's folder is missing", nullptr,
-           "--save_cloud={seq}/none/cloud.ply", 2,
-           "{seq}/none/cloud.ply: cannot be written (No such file"},
-          {"a mesh of an unknown kind", nullptr, "--save_mesh={dir}/mesh.obj",
-           2, "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
-          {"a mesh without depths", nullptr,
-           "--min_depth=4.2 --save_mesh={dir}/mesh.ply", 2,
-           "--voxel or --max_depth: "},
-          {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
-           "{seq}: a point cloud needs the extension .ply"},
-          {"the cloud is the ground truth", nullptr,
-           "--save_cloud={seq}/groundtruth.txt", 2,
-           "{seq}/groundtruth.txt: a point cloud needs the extension .ply"},
-          {"a recording of ROS 1", nullptr, "--record={dir}/a.bag", 2,
-           "--record={dir}/a.bag: the name of a recording for ROS 2 must end "
-           "in .mcap"},
-          {"the recording's folder is missing", nullptr,
-           "--record={dir}/none/a.mcap", 2,
-           "{dir}/none/a.mcap: cannot be written (No such file"},
           {"the recording exists",
            [](const Seq& s) { s.Write("../mine.mcap", "mine"); },
            "--record={dir}/mine.mcap", 2,
@@ -70,53 +71,39 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            [](const Seq& s) { s.Write("../left.mcap.partial", "mine"); },
            "--record={dir}/left.mcap", 2,
            "{dir}/left.mcap.partial: another program is writing it, or a"},
-          {"a recording beside the images that are read", nullptr,
-           "--record={seq}/a.mcap", 2,
-           "--record={seq}/a.mcap: is in the recording's own folder {seq}"},
-          {"the cloud is the mesh", nullptr,
-           "--save_cloud={dir}/a.ply --save_mesh={dir}/a.ply", 2,
-           "--save_cloud and --save_mesh are the same file"},
       });
-  ExpectEach(
+  // Of other programs, where there are a file and a list of sequences.
+  const std::string kMany =
+      "--json --rpe_frames="
+      "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24";
+  ExpectRefused(
       "",
       {
-          {"simulate: below a file", file,
-           RGBD_SIMULATE " --frames=2 --output={seq}/file/out", 2,
+          {RGBD_SIMULATE " --frames=2 --output={seq}/file/out",
            "{seq}/file/out: cannot be written: Not a directory"},
-          {"simulate: a folder in use", nullptr,
-           RGBD_SIMULATE " --frames=2 --output={seq}", 2,
+          {RGBD_SIMULATE " --frames=2 --output={seq}",
            "{seq}: already exists and is not an empty folder"},
-          {"convert: within the recording", nullptr,
-           RGBD_CONVERT " --dataset={seq} --output={seq}/out", 2, kOwn},
-          {"slam: within the recording", nullptr,
-           RGBD_SLAM " --dataset={seq} --output={seq}/out", 2, kOwn},
-          {"calibrate: within the recording", nullptr,
-           RGBD_CALIBRATE " --dataset={seq} --output={seq}/out", 2, kOwn},
-          {"compare: within the recording", nullptr,
-           RGBD_COMPARE " --experiment={seq} --camera={seq}/camera.yaml "
+          {RGBD_CONVERT " --dataset={seq} --output={seq}/out", kOwn},
+          {RGBD_SLAM " --dataset={seq} --output={seq}/out", kOwn},
+          {RGBD_CALIBRATE " --dataset={seq} --output={seq}/out", kOwn},
+          {RGBD_COMPARE " --experiment={seq} --camera={seq}/camera.yaml "
                         "--output={seq}/out",
-           2, kOwn},
-          {"compare: below a file", file, kSweep + "--output={seq}/file/out", 2,
+           kOwn},
+          {kSweep + "--output={seq}/file/out",
            "--output={seq}/file/out: cannot be created (Not a directory)"},
-          {"batch: below a file",
-           [](const Seq& s) {
-             s.Write("file", "mine");
-             s.Write("list", ".\n");
-           },
-           RGBD_BATCH " --sequences={seq}/list --output={seq}/file/out", 2,
+          {RGBD_BATCH " --sequences={seq}/list --output={seq}/file/out",
            "--output={seq}/file/out: cannot be created (Not a directory)"},
-          {"evaluate: below a file", file,
-           kBadEvaluation + "--aligned={seq}/file/aligned.txt", 2,
+          {kBadEvaluation + "--aligned={seq}/file/aligned.txt",
            "{seq}/file/aligned.txt: cannot be written (Not a directory)"},
-          {"evaluate: nobody takes the output", nullptr,
-           "(exec >/dev/full; exec " + kBadEvaluation + ")", 2,
+          // Nobody takes the output, or more of it than a buffer holds.
+          {"(exec >/dev/full; exec " + kBadEvaluation + ")",
            "the standard output cannot be written (No space left on device)"},
-          {"evaluate: nobody takes more than a buffer", nullptr,
-           "(exec >/dev/full; exec " + kBadEvaluation +
-               "--json --rpe_frames="
-               "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,"
-               "24)",
-           2, "the standard output cannot be written"},
+          {"(exec >/dev/full; exec " + kBadEvaluation + kMany + ")",
+           "the standard output cannot be written"},
+      },
+      [](const Seq& s) {
+        s.Write("file", "mine");
+        s.Write("list", ".\n");
       });
 }
 

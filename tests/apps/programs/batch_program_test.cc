@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/util/text_file.h"
-#include "tests/support/run_program.h"
+#include "tests/support/program_test.h"
 
 namespace rgbd_pose {
 namespace {
@@ -25,7 +25,6 @@ using testing::StartsWith;
 
 const std::string kBatch = RGBD_BATCH;
 const std::string kOdometry = RGBD_ODOMETRY;
-const std::string kSimulate = RGBD_SIMULATE;
 
 // Number of timing columns at the end of each line.
 constexpr int kFrameTimes = 6;
@@ -72,20 +71,12 @@ std::map<std::string, std::string> TimelessFiles(const std::string& folder) {
   return files;
 }
 
-class BatchProgramTest : public testing::Test {
+class BatchProgramTest : public ProgramTest {
  protected:
   // Two sequences small enough to be tracked very quickly.
   BatchProgramTest() {
-    const std::string camera = folder_.Write(
-        "camera.yaml",
-        "Camera.fx: 262\nCamera.fy: 262\nCamera.cx: 160\nCamera.cy: 120\n"
-        "Camera.width: 320\nCamera.height: 240\n");
-    for (const std::string path : {"xyz", "pan_tilt"}) {
-      const RunResult run =
-          Run(kSimulate + " --frames=6 --path=" + path + " --camera=" + camera +
-              " --output=" + (folder_ / ("data/" + path)));
-      EXPECT_EQ(run.exit_code, 0) << run.err;
-    }
+    Render("data/xyz", "--frames=6 --path=xyz");
+    Render("data/pan_tilt", "--frames=6 --path=pan_tilt");
     folder_.Write("list.txt", "data/xyz\ndata/pan_tilt\n");
     // Replaces the odometry: exits in the way given by the sequence's name.
     folder_.Write("program.sh",
@@ -114,14 +105,6 @@ class BatchProgramTest : public testing::Test {
     return " --program=" + (folder_ / "program.sh");
   }
 
-  RunResult Run(const std::string& command) const {
-    return RunCommand(command, folder_);
-  }
-
-  std::string Read(const std::string& file) const {
-    return ReadTextFile(folder_ / file);
-  }
-
   // A column of OUTPUT/<file>, without its header.
   std::vector<std::string> Column(const std::string& file,
                                   size_t column) const {
@@ -137,8 +120,6 @@ class BatchProgramTest : public testing::Test {
     }
     return cells;
   }
-
-  const TempFolder folder_;
 };
 
 constexpr size_t kStatus = 7;

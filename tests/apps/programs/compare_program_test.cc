@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/util/text_file.h"
-#include "tests/support/run_program.h"
+#include "tests/support/program_test.h"
 
 namespace rgbd_pose {
 namespace {
@@ -16,38 +16,21 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class CompareProgramTest : public testing::Test {
+class CompareProgramTest : public ProgramTest {
  protected:
   RunResult Compare(const std::string& arguments) const {
-    return RunCommand(std::string(RGBD_COMPARE) + " --output=" +
-                          (folder_ / "results") + " " + arguments,
-                      folder_);
+    return Run(RGBD_COMPARE " --output=" + (folder_ / "results") + " " +
+               arguments);
   }
 
   std::string Result(const std::string& file) const {
-    return ReadTextFile(folder_ / ("results/" + file));
+    return Read("results/" + file);
   }
 
-  // A camera small enough to be rendered very quickly.
   std::string Camera() const {
-    return " --camera=" +
-           folder_.Write(
-               "camera.yaml",
-               "Camera.fx: 262\nCamera.fy: 262\nCamera.cx: 160\n"
-               "Camera.cy: 120\nCamera.width: 320\nCamera.height: 240\n");
+    return " --camera=" + folder_.Write("camera.yaml", kSmallCamera);
   }
-
-  const TempFolder folder_;
 };
-
-int Count(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (size_t at = text.find(part); at != std::string::npos;
-       at = text.find(part, at + part.size())) {
-    ++count;
-  }
-  return count;
-}
 
 TEST_F(CompareProgramTest, PanTiltGivesTables) {
   const RunResult run = Compare(
@@ -55,16 +38,16 @@ TEST_F(CompareProgramTest, PanTiltGivesTables) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith(Result("report.md")));
   EXPECT_THAT(run.out, HasSubstr("| truth | 0 | 0 | 0 |"));
-  EXPECT_EQ(Count(run.out, "\n| none |"), 2);  // one row per table
-  EXPECT_EQ(Count(run.out, "\n| tukey |"), 2);
-  EXPECT_EQ(Count(Result("tables.csv"), "\n"), 3);  // with the header
+  EXPECT_EQ(CountOf("\n| none |", run.out), 2);  // one row per table
+  EXPECT_EQ(CountOf("\n| tukey |", run.out), 2);
+  EXPECT_EQ(CountOf("\n", Result("tables.csv")), 3);  // with the header
   // Either the page is written or the output says why not.
   const bool has_page =
       std::filesystem::exists(folder_ / "results/report.html");
-  EXPECT_EQ(Count(run.out, "\nreport in   "), 1);
-  EXPECT_EQ(Count(run.out, "no file: built without plotly.js"), !has_page);
+  EXPECT_EQ(CountOf("\nreport in   ", run.out), 1);
+  EXPECT_EQ(CountOf("no file: built without plotly.js", run.out), !has_page);
   // The truth and two losses, six frames each.
-  EXPECT_EQ(Count(Result("paths.csv"), "\n"), 1 + 3 * 6);
+  EXPECT_EQ(CountOf("\n", Result("paths.csv")), 1 + 3 * 6);
 }
 
 TEST_F(CompareProgramTest, ARunCanBeRepeatedFromItsFlags) {
@@ -79,17 +62,15 @@ TEST_F(CompareProgramTest, ARunCanBeRepeatedFromItsFlags) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "results/report.html"));
 }
 
+constexpr char kName[] = "a \"long\" name";
+
 class CompareFolderTest : public CompareProgramTest {
  protected:
-  void SetUp() override {
-    const RunResult run =
-        RunCommand(std::string(RGBD_SIMULATE) +
-                       " --path=xyz --frames=4 --output='" + Sequence() + "'",
-                   folder_);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+  CompareFolderTest() {
+    Render(kName, "--path=xyz --frames=4 --camera=ros_default");
   }
 
-  std::string Sequence() const { return folder_ / "a \"long\" name"; }
+  std::string Sequence() const { return folder_ / kName; }
   std::string Experiment() const {
     return " --losses=none,tukey --experiment='" + Sequence() + "/'";
   }
@@ -100,19 +81,20 @@ TEST_F(CompareFolderTest, FewFramesOfAFolder) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("# M-estimators on a 'long' name\n"));
   EXPECT_THAT(run.out, HasSubstr("## a 'long' name, 5000 raw depth units"));
-  EXPECT_EQ(Count(run.out, "| n/a | n/a |"), 2) << "shorter than 1 s";
+  EXPECT_EQ(CountOf("| n/a | n/a |", run.out), 2) << "shorter than 1 s";
 }
 
 TEST_F(CompareFolderTest, Freiburg2ComesAtBothDepthScales) {
   std::filesystem::remove(Sequence() + "/groundtruth.txt");
   const RunResult run = Compare("--camera=tum_fr2" + Experiment());
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(Count(run.out, ", 5000 raw depth units per metre"), 1);
-  EXPECT_EQ(Count(run.out, ", 5208 raw depth units per metre"), 1);
-  EXPECT_EQ(Count(run.out, "There is no groundtruth.txt"), 2);
-  EXPECT_EQ(Count(run.out, "Frames tracked (%): none 100.0, tukey 100.0."), 2);
-  EXPECT_EQ(Count(run.out, "ATE"), 0);
-  EXPECT_EQ(Count(Result("tables.csv"), "\n"), 1 + 2 * 2);
+  EXPECT_EQ(CountOf(", 5000 raw depth units per metre", run.out), 1);
+  EXPECT_EQ(CountOf(", 5208 raw depth units per metre", run.out), 1);
+  EXPECT_EQ(CountOf("There is no groundtruth.txt", run.out), 2);
+  EXPECT_EQ(CountOf("Frames tracked (%): none 100.0, tukey 100.0.", run.out),
+            2);
+  EXPECT_EQ(CountOf("ATE", run.out), 0);
+  EXPECT_EQ(CountOf("\n", Result("tables.csv")), 1 + 2 * 2);
 }
 
 TEST_F(CompareFolderTest, AllFramesLost) {
@@ -126,7 +108,7 @@ TEST_F(CompareFolderTest, AllFramesLost) {
     const RunResult run = Compare("--camera=" + camera + Experiment());
     EXPECT_EQ(run.exit_code, 3) << run.err;
     EXPECT_THAT(run.out, HasSubstr(", 5000000 raw depth units"));
-    EXPECT_EQ(Count(run.out, "\n| tukey | n/a | n/a | n/a |"), 1);
+    EXPECT_EQ(CountOf("\n| tukey | n/a | n/a | n/a |", run.out), 1);
   }
 }
 
@@ -135,7 +117,7 @@ TEST_F(CompareProgramTest, SweepGivesEveryCell) {
       Compare("--experiment=sweep --seeds=10 --losses=none,tukey");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   // 2 losses, 2 schedules, 2 starts, 7 shares, and the header.
-  EXPECT_EQ(Count(Result("sweep.csv"), "\n"), 2 * 2 * 2 * 7 + 1);
+  EXPECT_EQ(CountOf("\n", Result("sweep.csv")), 2 * 2 * 2 * 7 + 1);
   EXPECT_THAT(run.out, HasSubstr("tukey has the smallest median"));
   const std::string csv = Result("sweep.csv");
   ASSERT_EQ(

@@ -8,6 +8,7 @@
 
 #include "core/util/text_file.h"
 #include "tests/support/browser.h"
+#include "tests/support/program_test.h"
 
 namespace rgbd_pose {
 namespace {
@@ -19,16 +20,10 @@ using testing::Not;
 constexpr size_t kMaxPageBytes = 3'000'000;
 // A PNG of a blank window of this size has a tenth of this.
 constexpr size_t kMinScreenshotBytes = 40'000;
+// A class of each plot that was drawn.
+constexpr char kPlot[] = " js-plotly-plot\"";
 
-int Occurrences(const std::string& text, const std::string& word) {
-  int count = 0;
-  for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) {
-    ++count;
-  }
-  return count;
-}
-
-class ReportTest : public testing::Test {
+class ReportTest : public ProgramTest {
  protected:
   void SetUp() override {
     // Without plotly.js the program reports that first, whatever the folder.
@@ -38,10 +33,8 @@ class ReportTest : public testing::Test {
     }
   }
 
-  void Simulate() const {
-    const RunResult simulate =
-        Run(RGBD_SIMULATE " --path=xyz --frames=16 --output=" + Sequence());
-    ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
+  void Simulate(const std::string& flags = "") const {
+    Render("sequence", "--path=xyz --frames=16 " + flags);
   }
 
   std::string Sequence() const { return folder_ / "sequence"; }
@@ -54,16 +47,34 @@ class ReportTest : public testing::Test {
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
 
-  RunResult Run(const std::string& command) const {
-    return RunCommand(command, folder_);
-  }
-
   // Opens the page of the run in the browser; `action` is a list of its flags.
   RunResult Browse(const std::string& action) const {
     return rgbd_pose::Browse(Page(), action, folder_);
   }
 
-  const TempFolder folder_;
+  // Opens the page, which must be drawn without complaints; returns its
+  // elements.
+  std::string Drawn(int width = 1280, const std::string& action = "") const {
+    const RunResult browser = Browse("--window-size=" + std::to_string(width) +
+                                     ",4000 --dump-dom " + action);
+    EXPECT_EQ(Console(browser), "");
+    EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+    return browser.out;
+  }
+
+  // Expects exactly these plots on narrow and on wide screens.
+  void ExpectPlots(const std::vector<std::string>& ids) const {
+    const std::string image = folder_ / "page.png";
+    for (const int width : {390, 1280}) {
+      const std::string page = Drawn(width, "--screenshot=" + image);
+      for (const std::string& id : ids) {
+        EXPECT_EQ(CountOf("<div id=\"" + id + "\"", page), 1) << id;
+      }
+      EXPECT_EQ(CountOf(kPlot, page), static_cast<int>(ids.size()));
+    }
+    ASSERT_TRUE(std::filesystem::exists(image));
+    EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
+  }
 };
 
 TEST_F(ReportTest, APageIsSmallAndNeedsNothingElse) {
@@ -82,35 +93,18 @@ TEST_F(ReportTest, APageIsSmallAndNeedsNothingElse) {
   EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the page of the run";
 }
 
-TEST_F(ReportTest, ARunWithoutAReportOrItsFiles) {
+TEST_F(ReportTest, ARunMayHaveNone) {
   Simulate();
   Track(" --noreport");
   EXPECT_FALSE(std::filesystem::exists(Page()));
-  std::filesystem::remove(folder_ / "run/frames.csv");
-  const RunResult report = Run(RGBD_REPORT " --run=" + (folder_ / "run"));
-  EXPECT_EQ(report.exit_code, 2);
-  EXPECT_THAT(report.err, HasSubstr("frames.csv"));
-  EXPECT_FALSE(std::filesystem::exists(Page()));
-  EXPECT_EQ(Run(RGBD_REPORT).exit_code, 1);
-  EXPECT_EQ(Run(RGBD_REPORT " --run=a --batch=b").exit_code, 2);
 }
 
 TEST_F(ReportTest, ABrowserDrawsAllPlots) {
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
   Simulate();
   Track();
-  const std::string image = folder_ / "page.png";
-  const RunResult browser =
-      Browse("--window-size=1280,4000 --dump-dom --screenshot=" + image);
-  EXPECT_EQ(Console(browser), "");
-  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  for (const std::string id : {"path-xy", "path-xz", "path-3d", "errors",
-                               "tracking", "times", "residuals", "weights"}) {
-    EXPECT_EQ(Occurrences(browser.out, "<div id=\"" + id + "\""), 1) << id;
-  }
-  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 8);
-  ASSERT_TRUE(std::filesystem::exists(image));
-  EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
+  ExpectPlots({"path-xy", "path-xz", "path-3d", "errors", "tracking", "times",
+               "residuals", "weights"});
 }
 
 TEST_F(ReportTest, WithoutGroundTruthThereAreNoErrors) {
@@ -118,11 +112,9 @@ TEST_F(ReportTest, WithoutGroundTruthThereAreNoErrors) {
   Simulate();
   std::filesystem::remove(Sequence() + "/groundtruth.txt");
   Track();
-  const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
-  EXPECT_EQ(Console(browser), "");
-  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Occurrences(browser.out, "<div id=\"errors\""), 0);
-  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 7);
+  const std::string drawn = Drawn(390);
+  EXPECT_EQ(CountOf("<div id=\"errors\"", drawn), 0);
+  EXPECT_EQ(CountOf(kPlot, drawn), 7);
 }
 
 TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
@@ -143,14 +135,12 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
   const RunResult report = Run(RGBD_REPORT " --batch=" + (folder_ / "run"));
   ASSERT_EQ(report.exit_code, 0) << report.err;
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
-  const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
-  EXPECT_EQ(Console(browser), "");
-  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 4);
-  EXPECT_EQ(Occurrences(browser.out, ">failed</td>"), 1);
-  EXPECT_EQ(Occurrences(browser.out, "<a href="), 1);  // to the only report
-  EXPECT_THAT(browser.out, HasSubstr("<a href=\"kitchen/b-r1/report.html\">"));
-  EXPECT_THAT(browser.out, HasSubstr("40.0 (30.0 to 50.0)"));  // of two parts
+  const std::string drawn = Drawn(390);
+  EXPECT_EQ(CountOf(kPlot, drawn), 4);
+  EXPECT_EQ(CountOf(">failed</td>", drawn), 1);
+  EXPECT_EQ(CountOf("<a href=", drawn), 1);  // to the only report
+  EXPECT_THAT(drawn, HasSubstr("<a href=\"kitchen/b-r1/report.html\">"));
+  EXPECT_THAT(drawn, HasSubstr("40.0 (30.0 to 50.0)"));  // of two parts
 }
 
 TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
@@ -163,12 +153,10 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   ASSERT_EQ(Run(RGBD_REPORT " --run=" + (folder_ / "run")).exit_code, 0);
   EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the page of the run";
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
-  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
-  EXPECT_EQ(Console(browser), "");
-  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 8);
-  EXPECT_THAT(browser.out, HasSubstr(">Point cloud: "));
-  EXPECT_THAT(browser.out, HasSubstr(">point cloud</text>"));  // the legend
+  const std::string drawn = Drawn();
+  EXPECT_EQ(CountOf(kPlot, drawn), 8);
+  EXPECT_THAT(drawn, HasSubstr(">Point cloud: "));
+  EXPECT_THAT(drawn, HasSubstr(">point cloud</text>"));  // the legend
 }
 
 TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
@@ -178,11 +166,9 @@ TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
   EXPECT_LT(page.size(), kMaxPageBytes);
   EXPECT_THAT(page, HasSubstr("\"corners\":\""));
   if (HasBrowser()) {
-    const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
-    EXPECT_EQ(Console(browser), "");
-    EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-    EXPECT_THAT(browser.out, HasSubstr(">Mesh: "));
-    EXPECT_THAT(browser.out, HasSubstr(">mesh</text>"));
+    const std::string drawn = Drawn();
+    EXPECT_THAT(drawn, HasSubstr(">Mesh: "));
+    EXPECT_THAT(drawn, HasSubstr(">mesh</text>"));
   }
   // Adding the mesh later gives the same page.
   const RunResult later =
@@ -216,27 +202,23 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
                                 [1, 0, 1, 0, false], [1, 0, 0, 0, false]],
             "graph_pairs": [[0, 2, 0], [2, 3, 0], [0, 3, 2]]})");
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
-  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
-  EXPECT_EQ(Console(browser), "");
-  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Occurrences(browser.out, "<div id=\"map\""), 1);
-  EXPECT_THAT(browser.out, HasSubstr("3 keyframes (1 more removed"));
-  EXPECT_THAT(browser.out, HasSubstr("2 times; last reason: pose 3 is not"));
+  const std::string drawn = Drawn();
+  EXPECT_EQ(CountOf("<div id=\"map\"", drawn), 1);
+  EXPECT_THAT(drawn, HasSubstr("3 keyframes (1 more removed"));
+  EXPECT_THAT(drawn, HasSubstr("2 times; last reason: pose 3 is not"));
   for (const std::string name :
        {"odometry path", "final path", "tracked pairs (2)", "loops (1)",
         "removed (1)", "keyframes (3)"}) {
-    EXPECT_EQ(Occurrences(browser.out, ">" + name + "</text>"), 1) << name;
+    EXPECT_EQ(CountOf(">" + name + "</text>", drawn), 1) << name;
   }
-  EXPECT_EQ(Occurrences(browser.out, "further pairs"),
-            1);  // only in the script
-  EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from the odometry path"));
-  EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=" +
-                                     (folder_ / "run/config.flags")));
+  EXPECT_EQ(CountOf("further pairs", drawn), 1);  // only in the script
+  EXPECT_THAT(drawn, HasSubstr("up to 0 mm from the odometry path"));
+  EXPECT_THAT(drawn, HasSubstr("rgbd_slam --flagfile=" +
+                               (folder_ / "run/config.flags")));
 
   write("{}");  // nothing to draw
-  const RunResult empty = Browse("--window-size=1280,4000 --dump-dom");
-  EXPECT_EQ(Console(empty), "");
-  EXPECT_EQ(Occurrences(empty.out, "<div id=\"map\""), 0);
+  const std::string empty = Drawn();
+  EXPECT_EQ(CountOf("<div id=\"map\"", empty), 0);
 }
 
 // rgbd_report writes the page of a comparison again from rgbd_compare's files.
@@ -256,27 +238,10 @@ class ComparisonReportTest : public ReportTest {
     ASSERT_EQ(again.exit_code, 0) << again.err;
     EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the same page";
   }
-
-  void ExpectPlots(const std::vector<std::string>& ids) const {
-    const std::string image = folder_ / "page.png";
-    for (const std::string width : {"390", "1280"}) {
-      const RunResult browser = Browse(
-          "--window-size=" + width + ",4000 --dump-dom --screenshot=" + image);
-      EXPECT_EQ(Console(browser), "");
-      EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-      for (const std::string& id : ids) {
-        EXPECT_EQ(Occurrences(browser.out, "<div id=\"" + id + "\""), 1) << id;
-      }
-      EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""),
-                static_cast<int>(ids.size()));
-    }
-    ASSERT_TRUE(std::filesystem::exists(image));
-    EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
-  }
 };
 
 TEST_F(ComparisonReportTest, OfASequenceWithTruth) {
-  Simulate();
+  Simulate("--camera=ros_default");
   Compare("--camera=ros_default --experiment=" + Sequence());
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
   ExpectPlots({"s0-path-xy", "s0-path-xz", "s0-path-3d", "s0-figures-mm",
@@ -284,7 +249,7 @@ TEST_F(ComparisonReportTest, OfASequenceWithTruth) {
 }
 
 TEST_F(ComparisonReportTest, WithoutTruthAtTwoDepthScales) {
-  Simulate();
+  Simulate("--camera=ros_default");
   std::filesystem::remove(Sequence() + "/groundtruth.txt");
   Compare("--camera=tum_fr2 --experiment=" + Sequence());
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";

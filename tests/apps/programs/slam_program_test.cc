@@ -11,48 +11,30 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/util/text_file.h"
-#include "tests/support/run_program.h"
+#include "tests/support/program_test.h"
 
 namespace rgbd_pose {
 namespace {
 
 using testing::HasSubstr;
 
-const std::string kRender = RGBD_SIMULATE;
 const std::string kSlam = RGBD_SLAM;
 constexpr size_t kSlamFrames = 40;
 
-class SlamProgramTest : public testing::Test {
+class SlamProgramTest : public ProgramTest {
  protected:
   SlamProgramTest() {
-    // Small images take a quarter of the time to render.
-    WriteFileAtomically(folder_ / "half.yaml",
-                        "Camera.fx: 262.5\nCamera.fy: 262.5\n"
-                        "Camera.cx: 159.5\nCamera.cy: 119.5\n"
-                        "Camera.width: 320\nCamera.height: 240\n");
-    const RunResult run = RunCommand(
-        kRender +
-            " --path=handheld --camera=" + std::string(folder_ / "half.yaml") +
-            " --frames=" + std::to_string(kSlamFrames) +
-            " --output=" + Sequence(),
-        folder_);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    Render("sequence",
+           "--path=handheld --frames=" + std::to_string(kSlamFrames));
   }
 
   std::string Sequence() const { return folder_ / "sequence"; }
 
-  RunResult Run(const std::string& output, const std::string& flags) const {
-    return RunCommand(
-        kSlam + " --dataset=" + Sequence() + " --camera=" + Sequence() +
-            "/camera.yaml --noreport --output=" + (folder_ / output) + " " +
-            flags,
-        folder_);
+  RunResult Map(const std::string& output, const std::string& flags) const {
+    return Run(kSlam + " --dataset=" + Sequence() + " --camera=" + Sequence() +
+               "/camera.yaml --noreport --output=" + (folder_ / output) + " " +
+               flags);
   }
-  std::string Read(const std::string& file) const {
-    return ReadTextFile(folder_ / file);
-  }
-
-  const TempFolder folder_;
 };
 
 // The angle (rad) between up in the first camera of two paths, z being up.
@@ -64,16 +46,11 @@ double TiltBetween(const Trajectory& a, const Trajectory& b) {
 }
 
 TEST_F(SlamProgramTest, TheWorldIsUprightInAllFilesOnceGravityIsKnown) {
-  const std::string render =
-      kRender +
-      " --path=pan_tilt --camera=" + std::string(folder_ / "half.yaml") +
-      " --frames=70 --imu --output=" + (folder_ / "shaken");
-  ASSERT_EQ(RunCommand(render, folder_).exit_code, 0);
+  Render("shaken", "--path=pan_tilt --frames=70 --imu");
   const auto run = [&](const std::string& output, const std::string& flags) {
-    const RunResult result = RunCommand(
-        kSlam + " --dataset=" + (folder_ / "shaken") +
-            " --noreport --output=" + (folder_ / output) + " " + flags,
-        folder_);
+    const RunResult result =
+        Run(kSlam + " --dataset=" + (folder_ / "shaken") +
+            " --noreport --output=" + (folder_ / output) + " " + flags);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return result.out;
   };
@@ -109,7 +86,7 @@ TEST_F(SlamProgramTest, TheWorldIsUprightInAllFilesOnceGravityIsKnown) {
 
 TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   const std::string map = folder_ / "map";
-  const RunResult first = Run("first", "--save_map=" + map);
+  const RunResult first = Map("first", "--save_map=" + map);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("keyframes"));
   for (const char* file :
@@ -127,7 +104,7 @@ TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   EXPECT_EQ(metrics.at("slam").at("keyframes_dropped"), 0);
 
   const std::string before = ReadTextFile(map + "/map.txt");
-  const RunResult again = Run("again", "--localise_only --load_map=" + map);
+  const RunResult again = Map("again", "--localise_only --load_map=" + map);
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(ReadTextFile(map + "/map.txt"), before);
   EXPECT_THAT(again.out, HasSubstr("1 segments joined"));
@@ -140,28 +117,6 @@ TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   EXPECT_GT(from, 0);
   EXPECT_EQ(ReadTrajectory(folder_ / "again/trajectory_online.txt").size(),
             kSlamFrames - from);
-}
-
-TEST_F(SlamProgramTest, SaysInOneLineWhatIsWrongWithMaps) {
-  const struct {
-    const char* flags;
-    const char* says;
-  } cases[] = {
-      {"--localise_only", "--localise_only needs --load_map"},
-      {"--load_map=nowhere", "--load_map=nowhere: "},
-      {"--load_map=nowhere --calibrate", "--calibrate changes the camera"},
-      {"--max_pairs=0", "max_pairs must be at least 1"},
-  };
-  for (const auto& [flags, says] : cases) {
-    const RunResult run = Run("bad", flags);
-    EXPECT_EQ(run.exit_code, 2) << flags;
-    EXPECT_THAT(run.err, HasSubstr(says));
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/trajectory.txt"));
-  }
-  const RunResult run = Run("same", "--save_map=" + (folder_ / "same"));
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("--save_map: must be another folder than "));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/util/text_file.h"
-#include "tests/support/run_program.h"
+#include "tests/support/program_test.h"
 
 namespace rgbd_pose {
 namespace {
@@ -21,18 +21,15 @@ constexpr int kFrames = 8;
 constexpr int kStopAt = 4;  // the frame that is being read then
 
 // A recording that waits for its depth image `kStopAt` like a camera: a pipe.
-class StoppedProgramTest : public testing::Test {
+class StoppedProgramTest : public ProgramTest {
  protected:
   StoppedProgramTest() {
-    folder_.Write("small.yaml",
-                  "Camera.fx: 131\nCamera.fy: 131\nCamera.cx: 79.5\n"
-                  "Camera.cy: 59.5\nCamera.width: 160\nCamera.height: 120\n");
-    const RunResult run =
-        RunCommand(RGBD_SIMULATE " --frames=" + std::to_string(kFrames) +
-                       " --camera=" + folder_ / "small.yaml" +
-                       " --output=" + folder_ / "camera",
-                   folder_);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const std::string camera = folder_.Write(
+        "tiny.yaml",
+        "Camera.fx: 131\nCamera.fy: 131\nCamera.cx: 79.5\nCamera.cy: 59.5\n"
+        "Camera.width: 160\nCamera.height: 120\n");
+    Render("camera",
+           "--frames=" + std::to_string(kFrames) + " --camera=" + camera);
     fs::path stalled;
     int index = 0;
     for (const TextLine& line : ReadTextTable(folder_ / "camera/depth.txt")) {
@@ -53,7 +50,7 @@ class StoppedProgramTest : public testing::Test {
         " || [ $((tries=tries+1)) = 1000 ]; do sleep 0.01; done; " + signal +
         "; timeout 20 cp '" + folder_ / "image.png" + "' '" + pipe_ +
         "' ) >/dev/null 2>&1 & exec " + program + " ; }";
-    return RunCommand(command, folder_);
+    return Run(command);
   }
 
   // When all frames before the stalled one are written.
@@ -70,14 +67,12 @@ class StoppedProgramTest : public testing::Test {
 
   // What a reader of the recording says, which needs its camera.
   std::string ReadBack(const std::string& name) const {
-    const RunResult run = RunCommand(
-        RGBD_ODOMETRY " --validate_only --dataset=" + folder_ / name +
-            " --camera=" + folder_ / (name + "/camera.yaml"),
-        folder_);
+    const RunResult run =
+        Run(RGBD_ODOMETRY " --validate_only --dataset=" + folder_ / name +
+            " --camera=" + folder_ / (name + "/camera.yaml"));
     return run.out + run.err;
   }
 
-  const TempFolder folder_;
   std::string pipe_;
 };
 
@@ -91,7 +86,7 @@ TEST_F(StoppedProgramTest, ASignalEndsItWithWhatThereIs) {
     EXPECT_THAT(ReadBack("out"), HasSubstr("frames      5, all readable"));
 
     // The next run of the same name leaves it alone.
-    const RunResult next = RunCommand(Convert(), folder_);
+    const RunResult next = Run(Convert());
     EXPECT_EQ(next.exit_code, 2);
     EXPECT_THAT(next.err, HasSubstr("is not an empty folder"));
     EXPECT_THAT(ReadBack("out"), HasSubstr("frames      5, all readable"));
@@ -102,7 +97,7 @@ TEST_F(StoppedProgramTest, ASignalEndsItWithWhatThereIs) {
 TEST_F(StoppedProgramTest, WhatAKilledOneRecordedIsNotOverwritten) {
   EXPECT_NE(ConvertUntil("kill -KILL $id; exit").exit_code, 6);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
-  const RunResult next = RunCommand(Convert(), folder_);
+  const RunResult next = Run(Convert());
   EXPECT_EQ(next.exit_code, 2);
   EXPECT_THAT(next.err, HasSubstr("out.partial holds what a killed program"));
   fs::rename(folder_ / "out.partial", folder_ / "kept");

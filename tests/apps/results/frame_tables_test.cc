@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "apps/shell/csv_table.h"
 #include "core/util/text_file.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
@@ -16,32 +16,24 @@
 namespace rgbd_pose {
 namespace {
 
-std::vector<std::string> Cells(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream words(line);
-  for (std::string cell; std::getline(words, cell, ',');) {
-    cells.push_back(cell);
-  }
-  return cells;
-}
+using testing::ElementsAre;
+
+constexpr const char* kPoseColumns[] = {"tx", "ty", "tz", "qx",
+                                        "qy", "qz", "qw"};
 
 // A lost frame has a pose as well, given by the policy for lost frames.
 TEST(FrameTablesTest, EveryFrameHasAPose) {
   TrackedFrame frame;
   frame.status = TrackingStatus::kLost;
   frame.world_from_cam = Rigid3d({0.5, 0.5, -0.5, 0.5}, {0.25, -0.125, 3.0});
-  std::istringstream csv(FormatFramesCsv({frame}));
-  std::string header, row;
-  std::getline(csv, header);
-  std::getline(csv, row);
-  const std::vector<std::string> names = Cells(header), cells = Cells(row);
-  ASSERT_EQ(cells.size(), names.size());
-  EXPECT_EQ(cells[1], "lost");
-  const auto tx = std::find(names.begin(), names.end(), "tx") - names.begin();
-  ASSERT_LE(tx + 7u, cells.size());
-  EXPECT_THAT(
-      std::vector<std::string>(cells.begin() + tx, cells.begin() + tx + 7),
-      testing::ElementsAre("0.25", "-0.125", "3", "0.5", "-0.5", "0.5", "0.5"));
+  const TempFolder folder;
+  const CsvTable table =
+      CsvTable::Read(folder.Write("frames.csv", FormatFramesCsv({frame})));
+  EXPECT_THAT(table.Words("status"), ElementsAre("lost"));
+  const double pose[] = {0.25, -0.125, 3.0, 0.5, -0.5, 0.5, 0.5};
+  for (int k = 0; k < 7; ++k) {
+    EXPECT_THAT(table.Numbers(kPoseColumns[k]), ElementsAre(pose[k]));
+  }
 }
 
 TEST(FrameTablesTest, AnEdgeIsARow) {
@@ -56,22 +48,20 @@ TEST(FrameTablesTest, AnEdgeIsARow) {
   }
   two.edges = {edge, edge};
   two.edges[1].ref = 5;
-  std::istringstream csv(FormatEdgesCsv({none, two}));
-  std::string header, first, second, more;
-  std::getline(csv, header);
-  std::getline(csv, first);
-  std::getline(csv, second);
-  EXPECT_FALSE(std::getline(csv, more));
-  const std::vector<std::string> names = Cells(header), cells = Cells(first);
-  ASSERT_EQ(names.size(), 2u + 7u + 21u);
-  ASSERT_EQ(cells.size(), names.size());
-  EXPECT_EQ(names[10], "cov_wx_wy");
-  EXPECT_EQ(names.back(), "cov_cz_cz");
-  EXPECT_THAT(std::vector<std::string>(cells.begin(), cells.begin() + 11),
-              testing::ElementsAre("3", "7", "0.25", "-0.125", "1e-05", "0.5",
-                                   "-0.5", "0.5", "0.5", "1e-07", "2e-07"));
-  EXPECT_EQ(cells.back(), "3.6e-06");
-  EXPECT_EQ(second.substr(0, 4), "5,7,");
+  const TempFolder folder;
+  const std::string csv = FormatEdgesCsv({none, two});
+  EXPECT_EQ(std::count(csv.begin(), csv.begin() + csv.find('\n'), ','),
+            2 + 7 + 21 - 1);
+  const CsvTable table = CsvTable::Read(folder.Write("edges.csv", csv));
+  EXPECT_THAT(table.Words("ref"), ElementsAre("3", "5"));
+  EXPECT_THAT(table.Words("cur"), ElementsAre("7", "7"));
+  const char* pose[] = {"0.25", "-0.125", "1e-05", "0.5", "-0.5", "0.5", "0.5"};
+  for (int k = 0; k < 7; ++k) {
+    EXPECT_EQ(table.Words(kPoseColumns[k])[0], pose[k]);
+  }
+  EXPECT_EQ(table.Words("cov_wx_wx")[0], "1e-07");
+  EXPECT_EQ(table.Words("cov_wx_wy")[0], "2e-07");
+  EXPECT_EQ(table.Words("cov_cz_cz")[0], "3.6e-06");
 }
 
 TEST(FrameTablesTest, EdgesAreReadBackToTheirFrames) {

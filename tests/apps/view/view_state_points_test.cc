@@ -5,14 +5,21 @@
 namespace rgbd_pose {
 namespace {
 
-TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
-  const Camera camera = {160, 120, 100, 100, 80, 60, 0, 0, 0};
+const Camera kSmallCamera = {160, 120, 100, 100, 80, 60, 0, 0, 0};
+
+// A grey wall without depth.
+Frame GreyFrame() {
   Frame frame;
   frame.gray = cv::Mat(120, 160, CV_8UC1, cv::Scalar(77));
   frame.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(0));
-  EXPECT_EQ(SamplePoints(frame, {}, camera), "");  // no depth is measured
-  frame.depth.setTo(10000);                        // 2 m
-  const std::string bytes = SamplePoints(frame, {}, camera);
+  return frame;
+}
+
+TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
+  Frame frame = GreyFrame();
+  EXPECT_EQ(SamplePoints(frame, {}, kSmallCamera), "");  // no depth is measured
+  frame.depth.setTo(10000);                              // 2 m
+  const std::string bytes = SamplePoints(frame, {}, kSmallCamera);
   ASSERT_GT(bytes.size(), 1000 * kViewPointBytes);
   ASSERT_EQ(bytes.size() % kViewPointBytes, 0U);
   double sum = 0.0;
@@ -37,12 +44,10 @@ TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
 }
 
 TEST(ViewPointsTest, PointsHaveTheColoursOfTheirPixels) {
-  const Camera camera = {160, 120, 100, 100, 80, 60, 0, 0, 0};
-  Frame frame;
-  frame.gray = cv::Mat(120, 160, CV_8UC1, cv::Scalar(77));
-  frame.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(10000));
+  Frame frame = GreyFrame();
+  frame.depth.setTo(10000);
   const cv::Mat color(120, 160, CV_8UC3, cv::Scalar('b', 'g', 'r'));
-  const std::string bytes = SamplePoints(frame, color, camera);
+  const std::string bytes = SamplePoints(frame, color, kSmallCamera);
   ASSERT_GT(bytes.size(), 1000 * kViewPointBytes);
   for (size_t at = 6; at < bytes.size(); at += kViewPointBytes) {
     ASSERT_EQ(bytes.substr(at, 3), "rgb");
@@ -51,22 +56,21 @@ TEST(ViewPointsTest, PointsHaveTheColoursOfTheirPixels) {
 
 // Rows that are exposed late see a turning camera's image moved on.
 TEST(ViewPointsTest, MatchesLieWhereTheirRowsWereExposed) {
-  const Camera camera = {160, 120, 100, 100, 80, 60, 0, 0, 0};
   Frame frame;
   frame.color_shutter = {0.0, 0.1};
   frame.twist = Twist{{0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}};
-  Correspondences matches(camera);
+  Correspondences matches(kSmallCamera);
   ASSERT_TRUE(matches.Add({80, 60, 2.0, 0.5, 0.01}, {80, 60, 2.0, 0.5, 0.01}));
   ASSERT_TRUE(matches.Add({80, 60, 2.0, 0.5, 0.01}, {80, 110, 2.0, 0.5, 0.01}));
-  const auto moves = MatchesInImage(frame, camera, matches, {0.5, 1.0});
+  const auto moves = MatchesInImage(frame, kSmallCamera, matches, {0.5, 1.0});
   ASSERT_EQ(moves.size(), 2U);
-  const double late = frame.color_shutter.RowTime(110.0, camera.height);
+  const double late = frame.color_shutter.RowTime(110.0, kSmallCamera.height);
   EXPECT_GT(late, 0.04);
   EXPECT_NEAR(moves[0][2], 80.0, 0.1);
   EXPECT_NEAR(moves[1][2], 80.0 - 100.0 * late, 0.5);
   EXPECT_NEAR(moves[1][3], 110.0, 0.5);
   EXPECT_EQ(moves[1][4], 1.0F);
-  EXPECT_EQ(MatchesInImage(frame, camera, matches, {})[0][4], -1.0F);
+  EXPECT_EQ(MatchesInImage(frame, kSmallCamera, matches, {})[0][4], -1.0F);
 }
 
 }  // namespace
