@@ -12,15 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/trajectory.h"
-#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_scene.h"
 #include "frontend/simulation/synthetic_sensor.h"
-#include "frontend/tracking/odometry.h"
-#include "tests/support/synthetic_faults.h"
-#include "tests/support/tracker_parts.h"
+#include "tests/support/circling_box.h"
+#include "tests/support/rendered_once.h"
+#include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
 namespace {
@@ -58,10 +56,9 @@ std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
 // The results of one tracker along a sequence.
 class Run {
  public:
-  Run(const std::string& tracker, const Dataset& dataset)
+  Run(const std::string& tracker, const Camera& camera)
       : tracker_(tracker),
-        odometry_(OdometryOptions(),
-                  MakeTracker(tracker, PartsFor(dataset.camera().camera))) {}
+        odometry_(OdometryOptions(), MakeTracker(tracker, PartsFor(camera))) {}
 
   // `expected` is the true pose.
   void Track(const Frame& frame, const Rigid3d& expected, double way) {
@@ -86,41 +83,68 @@ class Run {
 using Check = std::function<void(const std::string& tracker,
                                  const std::vector<Outcome>& outcomes)>;
 
+// Frames with their poses.
+struct Sequence {
+  Camera camera;
+  int size;
+  std::function<Frame(int)> read;
+  std::function<Rigid3d(int)> world_from_cam;
+};
+
+Sequence SequenceOf(const SyntheticDataset& dataset) {
+  return {dataset.camera().camera, dataset.size(),
+          [&dataset](int i) { return dataset.Read(i); },
+          [&dataset](int i) { return dataset.WorldFromCam(i); }};
+}
+
 // Runs every tracker along a sequence whose frames are rendered only once.
-void ForEveryTracker(const Dataset& dataset, const Trajectory& truth,
-                     const Check& check) {
+void ForEveryTracker(const Sequence& sequence, const Check& check) {
   std::deque<Run> runs;
   for (const std::string& tracker : TrackerNames()) {
-    runs.emplace_back(tracker, dataset);
+    runs.emplace_back(tracker, sequence.camera);
   }
+  const Rigid3d first_from_world = sequence.world_from_cam(0).Inverse();
   double way = 0.0;
-  const Rigid3d first_from_world = truth[0].world_from_cam.Inverse();
-  for (int i = 0; i < dataset.size(); ++i) {
-    if (i > 0) {
-      way += (truth[i].world_from_cam.translation -
-              truth[i - 1].world_from_cam.translation)
-                 .norm();
-    }
-    const Frame frame = dataset.Read(i);
-    for (Run& run : runs) {
-      run.Track(frame, first_from_world * truth[i].world_from_cam, way);
-    }
+  Rigid3d last;
+  for (int i = 0; i < sequence.size; ++i) {
+    const Rigid3d pose = first_from_world * sequence.world_from_cam(i);
+    way += (pose.translation - last.translation).norm();
+    last = pose;
+    const Frame frame = sequence.read(i);
+    for (Run& run : runs) run.Track(frame, pose, way);
   }
   for (const Run& run : runs) {
     SCOPED_TRACE(run.tracker());
-    EXPECT_EQ(run.outcomes().size(), static_cast<size_t>(dataset.size()));
+    EXPECT_EQ(run.outcomes().size(), static_cast<size_t>(sequence.size));
     check(run.tracker(), run.outcomes());
   }
 }
 
-void ForEveryTracker(const std::string& path, int frames,
-                     const std::vector<Fault>& faults, const Check& check) {
-  SyntheticOptions options;
-  options.path = path;
-  options.frames = frames;
-  const FaultyDataset dataset(options, faults);
-  ForEveryTracker(dataset, dataset.ground_truth(), check);
+// The tests share these frames of the circle.
+constexpr int kCircleFrames = 60;
+
+const RenderedOnce& Circle() {
+  static const RenderedOnce circle(RoomOptions("circle", kCircleFrames));
+  return circle;
 }
+
+// Runs along the first frames of the circle, with a fault of the frames
+// first <= i < end.
+void ForEveryTracker(int frames, int first, int end,
+                     const std::function<void(int i, Frame* frame)>& spoil,
+                     const Check& check) {
+  Sequence sequence = SequenceOf(Circle());
+  sequence.size = frames;
+  sequence.read = [&](int i) {
+    Frame frame = Circle().Read(i);
+    if (i >= first && i < end) spoil(i, &frame);
+    return frame;
+  };
+  ForEveryTracker(sequence, check);
+}
+
+void BlackOut(int /*i*/, Frame* frame) { frame->gray.setTo(0); }
+void CoverDepth(int /*i*/, Frame* frame) { frame->depth.setTo(0); }
 
 void ExpectNoWrongOk(const std::vector<Outcome>& outcomes) {
   for (const Outcome& outcome : outcomes) {
@@ -154,7 +178,7 @@ void ExpectRecovery(const std::vector<Outcome>& outcomes, int end) {
 
 TEST(OdometryFaultsTest, BlackFramesAreLeftBehind) {
   ForEveryTracker(
-      "circle", 50, {{FaultKind::kBlack, 15, 35}},
+      50, 15, 35, BlackOut,
       [](const std::string& tracker, const std::vector<Outcome>& outcomes) {
         // Trackers that use depth need not be lost.
         if (tracker == "features") ExpectLost(outcomes, 15, 35);
@@ -165,7 +189,7 @@ TEST(OdometryFaultsTest, BlackFramesAreLeftBehind) {
 
 TEST(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
   ForEveryTracker(
-      "circle", 60, {{FaultKind::kCovered, 15, 45}},  // 1 s
+      60, 15, 45, CoverDepth,  // 1 s
       [](const std::string& tracker, const std::vector<Outcome>& outcomes) {
         // Pixel costs use the depth of the reference.
         if (tracker == "features") {
@@ -180,8 +204,11 @@ TEST(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
 
 // Neither gray levels nor depths give information.
 TEST(OdometryFaultsTest, ACoveredLensIsNotFollowed) {
-  ForEveryTracker("circle", 50,
-                  {{FaultKind::kBlack, 15, 35}, {FaultKind::kCovered, 15, 35}},
+  const auto cover = [](int i, Frame* frame) {
+    BlackOut(i, frame);
+    CoverDepth(i, frame);
+  };
+  ForEveryTracker(50, 15, 35, cover,
                   [](const std::string&, const std::vector<Outcome>& outcomes) {
                     ExpectLost(outcomes, 15, 35);
                     ExpectRecovery(outcomes, 35);
@@ -190,38 +217,57 @@ TEST(OdometryFaultsTest, ACoveredLensIsNotFollowed) {
 
 TEST(OdometryFaultsTest, FindsItselfAfterAKnock) {
   constexpr int kKnock = 20;
-  ForEveryTracker("circle", 40, {{FaultKind::kTurned, kKnock}},
-                  [](const std::string&, const std::vector<Outcome>& outcomes) {
-                    ExpectNoWrongOk(outcomes);
-                    ExpectRecovery(outcomes, kKnock);
-                  });
+  SyntheticOptions options = RoomOptions("circle", kCircleFrames);
+  options.path_from_cam =
+      Rigid3d::FromRotationVector({0.0, 25.0 * M_PI / 180.0, 0.0}, {0, 0, 0});
+  const SyntheticDataset turned(options);
+  const auto at = [&](int i) -> const SyntheticDataset& {
+    return i < kKnock ? Circle() : turned;
+  };
+  ForEveryTracker(
+      {Circle().camera().camera, 40, [&](int i) { return at(i).Read(i); },
+       [&](int i) { return at(i).WorldFromCam(i); }},
+      [](const std::string&, const std::vector<Outcome>& outcomes) {
+        ExpectNoWrongOk(outcomes);
+        ExpectRecovery(outcomes, kKnock);
+      });
 }
 
 TEST(OdometryFaultsTest, DoesNotFollowABoxThatFillsMuchOfTheImage) {
-  ForEveryTracker("circle", 60, {{FaultKind::kBox, 15, 50}},
-                  [](const std::string&, const std::vector<Outcome>& outcomes) {
-                    ExpectNeverLost(outcomes);
-                    ExpectNoWrongOk(outcomes);
-                    ExpectRecovery(outcomes, 50);
-                  });
+  const CirclingBox box(RoomOptions("circle", kCircleFrames), 15);
+  ForEveryTracker(
+      60, 15, 50, [&](int i, Frame* frame) { box.DrawInto(i, frame); },
+      [](const std::string&, const std::vector<Outcome>& outcomes) {
+        ExpectNeverLost(outcomes);
+        ExpectNoWrongOk(outcomes);
+        ExpectRecovery(outcomes, 50);
+      });
 }
 
 // A pan that reaches 48 deg/s, 44 px from frame to frame at 10 Hz.
 TEST(OdometryFaultsTest, TracksAThirdOfTheFrames) {
-  ForEveryTracker("pan_tilt", 120, {{FaultKind::kThinned, 15, 105}},
-                  [](const std::string&, const std::vector<Outcome>& outcomes) {
-                    ASSERT_EQ(outcomes.size(), 60u);
-                    ExpectNeverLost(outcomes);
-                    ExpectNoWrongOk(outcomes);
-                    ExpectRecovery(outcomes, 15 + 30);
-                  });
+  const SyntheticDataset pan(RoomOptions("pan_tilt", 120));
+  const auto source = [](int i) {
+    return i < 15 ? i : i < 45 ? 3 * i - 30 : i + 60;
+  };
+  ForEveryTracker(
+      {pan.camera().camera, 60, [&](int i) { return pan.Read(source(i)); },
+       [&](int i) { return pan.WorldFromCam(source(i)); }},
+      [](const std::string&, const std::vector<Outcome>& outcomes) {
+        ExpectNeverLost(outcomes);
+        ExpectNoWrongOk(outcomes);
+        ExpectRecovery(outcomes, 15 + 30);
+      });
 }
 
 TEST(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
   for (const double gain : {2.0, 0.5}) {
     SCOPED_TRACE("gain " + std::to_string(gain));
     ForEveryTracker(
-        "circle", 40, {{FaultKind::kGain, 15, 30, gain}},
+        40, 15, 30,
+        [gain](int /*i*/, Frame* frame) {
+          frame->gray.convertTo(frame->gray, CV_8U, gain);
+        },
         [](const std::string&, const std::vector<Outcome>& outcomes) {
           ExpectNeverLost(outcomes);
           ExpectNoWrongOk(outcomes);
@@ -233,64 +279,40 @@ TEST(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
 
 // Half the resolution: blurred frames take several renderings each.
 TEST(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
-  SyntheticOptions options;
-  options.path = "handheld";
-  options.frames = 150;
+  SyntheticOptions options = RoomOptions("handheld", 150);
   options.exposure_s = 0.01;
   options.exposure_drift = 0.3;
   options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
   const SyntheticDataset dataset(options);
-  ForEveryTracker(dataset, dataset.ground_truth(),
+  ForEveryTracker(SequenceOf(dataset),
                   [](const std::string&, const std::vector<Outcome>& outcomes) {
-                    ASSERT_EQ(outcomes.size(), 150u);
                     ExpectNeverLost(outcomes);
                     ExpectNoWrongOk(outcomes);
                   });
 }
 
-// One view with new noise in every frame: equal to SyntheticDataset with path
-// "still", but rendered only once.
-class NoisyView : public Dataset {
- public:
-  explicit NoisyView(int frames) : frames_(frames) {
-    const Rigid3d pose = FindSyntheticPath("still")(0.0, 1.0);
-    view_ = Renderer(MakeScene("room", 1), camera_.camera).Render(pose);
-  }
-
-  int size() const override { return frames_; }
-  double timestamp(int index) const override { return index / 30.0; }
-  const RgbdCamera& camera() const override { return camera_; }
-
-  Frame Read(int index) const override {
+// One view with new noise in every frame, as along path "still", but rendered
+// only once.
+TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
+  const Camera camera;
+  const Rendering view = Renderer(MakeScene("room", 1), camera)
+                             .Render(FindSyntheticPath("still")(0.0, 1.0));
+  const auto read = [&](int index) {
     const uint64_t key = static_cast<uint64_t>(index) << 41;
-    cv::Mat color = view_.color.clone();
+    cv::Mat color = view.color.clone();
     AddColorNoise(key, &color);
     Frame frame;
-    frame.index = index;
-    frame.timestamp = timestamp(index);
+    frame.timestamp = index / 30.0;
     cv::cvtColor(color, frame.gray, cv::COLOR_BGR2GRAY);
     frame.depth = EncodeDepth(
-        MeasureDepth(view_.depth, camera_.camera.fx, key + (uint64_t{1} << 40)),
-        camera_.depth_scale);
+        MeasureDepth(view.depth, camera.fx, key + (uint64_t{1} << 40)),
+        frame.depth_scale);
     return frame;
-  }
-
- private:
-  int frames_;
-  RgbdCamera camera_;
-  Rendering view_;
-};
-
-TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
+  };
   constexpr int kFrames = 300;  // 10 s
-  const NoisyView dataset(kFrames);
-  Trajectory truth;
-  for (int i = 0; i < kFrames; ++i) {
-    truth.push_back({dataset.timestamp(i), Rigid3d()});
-  }
   // The noise of a frame, with hundreds of corners of 0.5 px, is a quarter of
   // this limit. A larger error would be drift.
-  ForEveryTracker(dataset, truth,
+  ForEveryTracker({camera, kFrames, read, [](int) { return Rigid3d(); }},
                   [](const std::string&, const std::vector<Outcome>& outcomes) {
                     for (const Outcome& outcome : outcomes) {
                       EXPECT_TRUE(outcome.ok()) << outcome;
