@@ -46,16 +46,6 @@ class ImageFileTest : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(ImageFileTest, ReadsWhatWasWritten) {
-  const cv::Mat color = Noise(CV_8UC3);
-  EXPECT_EQ(cv::norm(ReadImageFile(Write("a.png", color)), color, cv::NORM_INF),
-            0);
-  const cv::Mat depth = Noise(CV_16UC1);
-  EXPECT_EQ(
-      cv::norm(ReadDepthImageFile(Write("b.png", depth)), depth, cv::NORM_INF),
-      0);
-}
-
 TEST_F(ImageFileTest, RefusesCutOffPng) {
   ExpectAnyCutRefused("color.png", Noise(CV_8UC3));
   ExpectAnyCutRefused("depth.png", Noise(CV_16UC1));
@@ -64,15 +54,6 @@ TEST_F(ImageFileTest, RefusesCutOffPng) {
 // Libraries accept these and fill the missing part with grey.
 TEST_F(ImageFileTest, RefusesCutOffJpeg) {
   ExpectAnyCutRefused("color.jpg", Noise(CV_8UC3));
-}
-
-// PNG has checksums.
-TEST_F(ImageFileTest, RefusesPngWithAChangedByte) {
-  const std::string path = Write("depth.png", Noise(CV_16UC1));
-  std::string content = ReadTextFile(path);
-  content[content.size() / 2] ^= 1;
-  folder_.Write("depth.png", content);
-  ExpectRefused(path, {"depth.png", "damaged"});
 }
 
 TEST_F(ImageFileTest, TakesBytesBehindAJpeg) {

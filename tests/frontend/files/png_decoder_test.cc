@@ -29,29 +29,13 @@ std::string RandomRows(int row_bytes, int filter = -1) {
   return rows;
 }
 
-PngParts Color(int filter = -1) {
-  return {kPngWidth,
-          kPngHeight,
-          {8, 2, 0, 0, 0},
-          "",
-          RandomRows(3 * kPngWidth, filter)};
+PngParts Parts(char bits, char color_type, int row_bytes, int filter) {
+  const std::string kind = {bits, color_type, 0, 0, 0};
+  return {kPngWidth, kPngHeight, kind, "", RandomRows(row_bytes, filter)};
 }
-
-PngParts Gray(int filter = -1) {
-  return {kPngWidth,
-          kPngHeight,
-          {8, 0, 0, 0, 0},
-          "",
-          RandomRows(kPngWidth, filter)};
-}
-
-PngParts Depth(int filter = -1) {
-  return {kPngWidth,
-          kPngHeight,
-          {16, 0, 0, 0, 0},
-          "",
-          RandomRows(2 * kPngWidth, filter)};
-}
+PngParts Color(int filter = -1) { return Parts(8, 2, 3 * kPngWidth, filter); }
+PngParts Gray(int filter = -1) { return Parts(8, 0, kPngWidth, filter); }
+PngParts Depth(int filter = -1) { return Parts(16, 0, 2 * kPngWidth, filter); }
 
 cv::Mat DecodeByOpenCv(std::string file, int flags) {
   return cv::imdecode(
@@ -94,7 +78,6 @@ void ExpectGray(const cv::Mat& decoded, const std::string& file) {
 void ExpectGrayAsOpenCv(const std::string& file) {
   ExpectGray(AsGray(file), file);
 }
-
 void ExpectDepthAsOpenCv(const std::string& file) {
   ExpectAsOpenCv(AsDepth(file), file, cv::IMREAD_UNCHANGED);
 }
@@ -189,29 +172,21 @@ TEST(PngDecoderTest, LeavesColorSpacesToOpenCv) {
   ExpectLeft(parts.File());
 }
 
-TEST(PngDecoderTest, LeavesDamagedFilesToOpenCv) {
+TEST(PngDecoderTest, KnowsADamagedFileAndLeavesItToOpenCv) {
   const std::string good = Color().File();
   ASSERT_FALSE(AsGray(good).empty());
-  for (size_t i = 0; i < good.size(); ++i) {
-    std::string file = good;
-    file[i] ^= 1;
-    ExpectLeft(file);
-    ExpectLeft(good.substr(0, i));
-  }
-}
-
-TEST(PngDecoderTest, KnowsADamagedFile) {
-  const std::string good = Color().File();
   EXPECT_FALSE(IsDamaged(good));
   EXPECT_FALSE(IsDamaged(good + "more behind the end"));
   EXPECT_FALSE(IsDamaged("no PNG at all"));
   EXPECT_FALSE(IsDamaged(""));
-  const size_t kSignature = 8;
-  for (size_t i = kSignature; i < good.size(); ++i) {
-    EXPECT_TRUE(IsDamaged(good.substr(0, i)));
-    std::string file = good;
-    file[i] ^= 1;
-    EXPECT_TRUE(IsDamaged(file)) << i;
+  constexpr size_t kSignature = 8;
+  for (size_t i = 0; i < good.size(); ++i) {
+    std::string changed = good;
+    changed[i] ^= 1;
+    for (const std::string& file : {changed, good.substr(0, i)}) {
+      ExpectLeft(file);
+      EXPECT_EQ(IsDamaged(file), i >= kSignature) << i;
+    }
   }
 }
 
