@@ -55,6 +55,12 @@ class BagTest : public testing::Test {
         parts);
   }
 
+  SourceOptions OptionsFor(const std::string& name) const {
+    SourceOptions options;
+    options.path = folder_ / name;
+    return options;
+  }
+
   TempFolder folder_;
 };
 

@@ -41,6 +41,12 @@ class BagImuTest : public Ros1BagTest {
       Write(topic, kStart + after + transfer, make(after));
     }
   }
+  void WriteStream(const std::string& topic, double rate, double seconds = 1.2,
+                   double transfer = 0.005) {
+    WriteStream(
+        topic, rate, [](double after) { return MakeImu(after); }, seconds,
+        transfer);
+  }
   void WriteUnited(double gravity = 9.81) {
     WriteStream(kUnited, 200.0,
                 [gravity](double after) { return MakeImu(after, gravity); });
@@ -56,6 +62,17 @@ class BagImuTest : public Ros1BagTest {
       imu.angular_velocity.x = 0.0;
       return imu;
     });
+  }
+
+  // Begins a bag with all images.
+  void Begin() {
+    Open();
+    WriteAll();
+  }
+  std::unique_ptr<FrameSource> SourceWithoutSensor() {
+    SourceOptions options = Options();
+    options.imu = "none";
+    return OpenSource("auto", options);
   }
 
   // Expects the samples of all frames, which reach beyond each.
@@ -81,8 +98,7 @@ class BagImuTest : public Ros1BagTest {
 };
 
 TEST_F(BagImuTest, SamplesComeWithTheFrames) {
-  Open();
-  WriteAll();
+  Begin();
   WriteUnited();
   const auto source = Source();
   ASSERT_TRUE(source->imu().has_value());
@@ -94,30 +110,23 @@ TEST_F(BagImuTest, SamplesComeWithTheFrames) {
 
 // A recorder that receives them in packets, long after the images.
 TEST_F(BagImuTest, SamplesThatArriveLateComeWithTheirFrames) {
-  Open();
-  WriteAll();
-  WriteStream(
-      kUnited, 200.0, [](double after) { return MakeImu(after); },
-      /*seconds=*/1.2, /*transfer=*/0.6);
+  Begin();
+  WriteStream(kUnited, 200.0, /*seconds=*/1.2, /*transfer=*/0.6);
   ExpectSamples(Source().get(), 200.0);
 }
 
 TEST_F(BagImuTest, ImagesStayAsTheyWereWithoutIt) {
-  Open();
-  WriteAll();
+  Begin();
   WriteUnited();
   ExpectFrames(Source().get(), kFrames);
-  SourceOptions options = Options();
-  options.imu = "none";
-  const auto without = OpenSource("auto", options);
+  const auto without = SourceWithoutSensor();
   EXPECT_FALSE(without->imu().has_value());
   EXPECT_TRUE(without->Next()->imu.empty());
 }
 
 // A RealSense whose driver does not unite the streams.
 TEST_F(BagImuTest, SeparateStreamsAreInterpolatedToOne) {
-  Open();
-  WriteAll();
+  Begin();
   WriteSeparate();
   const auto source = Source();
   EXPECT_TRUE(source->imu()->has_gyro);
@@ -125,8 +134,7 @@ TEST_F(BagImuTest, SeparateStreamsAreInterpolatedToOne) {
 }
 
 TEST_F(BagImuTest, AGyroscopeAloneIsLeftOutWithALine) {
-  Open();
-  WriteAll();
+  Begin();
   WriteStream(kGyro, 400.0, [](double after) { return MakeImu(after, 0.0); });
   const auto source = Source();
   EXPECT_FALSE(source->imu().has_value());
@@ -134,14 +142,11 @@ TEST_F(BagImuTest, AGyroscopeAloneIsLeftOutWithALine) {
               testing::ElementsAre(HasSubstr(
                   "a.bag: /camera/gyro/sample is not used: no topic has")));
   ExpectFrames(source.get(), kFrames);
-  SourceOptions options = Options();
-  options.imu = "none";
-  EXPECT_THAT(OpenSource("auto", options)->remarks(), testing::IsEmpty());
+  EXPECT_THAT(SourceWithoutSensor()->remarks(), testing::IsEmpty());
 }
 
 TEST_F(BagImuTest, AUnitedStreamIsTakenBeforeSeparateOnes) {
-  Open();
-  WriteAll();
+  Begin();
   WriteSeparate();
   WriteUnited();
   ExpectSamples(Source().get(), 200.0);
@@ -157,10 +162,9 @@ TEST_F(BagImuTest, AUnitedStreamIsTakenBeforeSeparateOnes) {
 
 // The sensor of the camera, not that of the robot.
 TEST_F(BagImuTest, TheSensorOfTheCameraIsTakenOfSeveral) {
-  Open();
-  WriteAll();
+  Begin();
   WriteUnited();
-  WriteStream("/base/imu", 50.0, [](double after) { return MakeImu(after); });
+  WriteStream("/base/imu", 50.0);
   const auto source = Source();
   ExpectSamples(source.get(), 200.0);
   EXPECT_THAT(source->remarks(),
@@ -169,9 +173,8 @@ TEST_F(BagImuTest, TheSensorOfTheCameraIsTakenOfSeveral) {
 }
 
 TEST_F(BagImuTest, TheMountingIsThatOfFixedTransforms) {
-  const Rigid3d optical_from_imu(
-      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX())),
-      {0.01, 0.02, 0.03});
+  const Rigid3d optical_from_imu =
+      Rigid3d::FromRotationVector({M_PI / 2, 0, 0}, {0.01, 0.02, 0.03});
   Open();
   tf2_msgs::TFMessage message;
   message.transforms.push_back(MakeTransform("/camera_link", kOptical, kStart,
@@ -212,10 +215,8 @@ TEST_F(BagImuTest, TheMountingIsThatOfTheViewersTransforms) {
                           : MakeImage(DepthImage(0), "mono16", kStart, ""));
   }
   Write(accel + "/tf/0", kStart, MakeMotion({{1, 0, 0, 0}, {0.01, 0, 0}}));
-  WriteStream(accel + "/imu/data", 63.0,
-              [](double after) { return MakeImu(after); });
-  WriteStream(gyro + "/imu/data", 200.0,
-              [](double after) { return MakeImu(after); });
+  WriteStream(accel + "/imu/data", 63.0);
+  WriteStream(gyro + "/imu/data", 200.0);
   const auto source = Source();
   EXPECT_EQ(source->imu()->calibration.cam_from_imu->translation.x(), -0.01);
   const std::vector<ImuSample> samples = source->Next()->imu;
@@ -225,8 +226,7 @@ TEST_F(BagImuTest, TheMountingIsThatOfTheViewersTransforms) {
 
 // A Kinect's driver, with -1 for what it does not measure.
 TEST_F(BagImuTest, AnAccelerometerAloneIsOne) {
-  Open();
-  WriteAll();
+  Begin();
   WriteStream("/imu", 100.0, [](double after) {
     sensor_msgs::Imu imu = MakeImu(after);
     imu.angular_velocity_covariance[0] = -1.0;
@@ -239,28 +239,21 @@ TEST_F(BagImuTest, AnAccelerometerAloneIsOne) {
 }
 
 TEST_F(BagImuTest, WrongUnitsAreOneLine) {
-  Open();
-  WriteAll();
+  Begin();
   WriteUnited(1.0);
   ExpectRefused({"a.bag: /camera/imu: accelerations are 1", "gravity is in g",
                  "--imu=none"});
-  SourceOptions options = Options();
-  options.imu = "none";
-  ExpectFrames(OpenSource("auto", options).get(), kFrames);
+  ExpectFrames(SourceWithoutSensor().get(), kFrames);
 }
 
 TEST_F(BagImuTest, ASensorThatStopsDoesNotHoldUpTheFrames) {
-  Open();
-  WriteAll();
-  WriteStream(
-      kUnited, 200.0, [](double after) { return MakeImu(after); },
-      /*seconds=*/0.2);
+  Begin();
+  WriteStream(kUnited, 200.0, /*seconds=*/0.2);
   ExpectFrames(Source().get(), kFrames);
 }
 
 TEST_F(BagImuTest, SamplesSentTwiceAreLeftOutAndCounted) {
-  Open();
-  WriteAll();
+  Begin();
   WriteStream(kUnited, 400.0, [](double after) {
     return MakeImu(std::floor(after * 200.0) / 200.0);
   });
@@ -273,8 +266,7 @@ TEST_F(BagImuTest, SamplesSentTwiceAreLeftOutAndCounted) {
 }
 
 TEST_F(BagImuTest, ACalibrationNeedsASensor) {
-  Open();
-  WriteAll();
+  Begin();
   SourceOptions options = Options();
   options.imu = folder_.Write("imu.yaml", "timeshift_cam_imu: 0.1");
   ExpectRefusedSource(options, {"a.bag: has no inertial sensor"});

@@ -17,7 +17,10 @@ TEST_F(Ros1BagTest, PrefersRegisteredDepthAndRawImages) {
         MakeImage(cv::Mat(kHeight, kWidth, CV_8UC1), "mono8", kStart));
   Write("/camera/rgb/image_color/compressed", kStart,
         MakeCompressed("bgr8; jpeg", {1, 2, 3}, kStart));
-  ExpectFrames(Source().get(), kFrames);
+  const auto source = Source();
+  ExpectFrames(source.get(), kFrames);
+  ASSERT_EQ(source->remarks().size(), 1u);
+  EXPECT_NE(source->remarks()[0].find(kDepth), std::string::npos);
 }
 
 TEST_F(Ros1BagTest, AsksWhichTopicsWhereSeveralWillDo) {
@@ -53,8 +56,7 @@ TEST_F(Ros1BagTest, TakesNoOtherImagesForDepth) {
       {"/zed/confidence/confidence_map", "32FC1"}};
   for (const auto& [topic, encoding] : others) {
     for (const bool has_depth : {false, true}) {
-      Open();
-      WriteInfo();
+      Begin();
       for (int k = 0; k < 3; ++k) {
         WriteColor(k);
         const std::string text = encoding;
@@ -73,8 +75,7 @@ TEST_F(Ros1BagTest, TakesNoOtherImagesForDepth) {
 }
 
 TEST_F(Ros1BagTest, SaysWhatIsTakenForDepthIfItsNameDoesNot) {
-  Open();
-  WriteInfo();
+  Begin();
   for (int k = 0; k < 3; ++k) {
     WriteColor(k);
     Write("/oak/stereo/image_raw", StampOf(k) + 0.011,
@@ -89,8 +90,7 @@ TEST_F(Ros1BagTest, SaysWhatIsTakenForDepthIfItsNameDoesNot) {
 
 // As openni2 does with depth and the ZED with colour.
 TEST_F(Ros1BagTest, TakesOneOfTopicsThatShowTheSame) {
-  Open();
-  WriteInfo();
+  Begin();
   for (int k = 0; k < 3; ++k) {
     WriteColor(k);
     WriteDepth(k);
@@ -113,19 +113,16 @@ TEST_F(Ros1BagTest, TakesOneOfTopicsThatShowTheSame) {
 }
 
 TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
-  Open();
-  WriteInfo();
+  Begin();
   ExpectRefused(
       {"a.bag: has no readable colour images", "/camera/rgb/camera_info"});
 
-  Open();
-  WriteInfo();
+  Begin();
   WriteColor(0);
   ExpectRefused({"has no readable depth images", kColor});
 
   Open();
-  WriteColor(0);
-  WriteDepth(0);
+  WriteFrames(1);
   ExpectRefused({"contains no camera calibration"});
 
   Open();
@@ -138,8 +135,7 @@ TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
   ExpectRefused({"has no readable colour images", "image_color 'bayer_rggb8'"});
 
   Open();
-  WriteColor(0);
-  WriteDepth(0);
+  WriteFrames(1);
   Write("/other/camera_info", kStart, MakeInfo(SmallCamera().camera));
   ExpectRefused({"has no CameraInfo next to", "/other/camera_info", "topics="});
 
@@ -147,8 +143,7 @@ TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
   Camera none = SmallCamera().camera;
   none.fx = none.fy = 0.0;
   Write("/camera/rgb/camera_info", kStart, MakeInfo(none));
-  WriteColor(0);
-  WriteDepth(0);
+  WriteFrames(1);
   ExpectRefused({"camera_info: the camera is not calibrated (K is 0)"});
 }
 

@@ -1,7 +1,6 @@
 // Recordings written by the format's own library (mcap/make_fixtures.mjs),
 // intact and damaged.
 
-#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
@@ -26,9 +25,8 @@ class McapFileTest : public BagTest {
     return ReadTextFile(PathOf(name));
   }
   SourceOptions Write(const std::string& name, const std::string& bytes) {
-    SourceOptions options;
-    options.path = folder_.Write(name, bytes);
-    return options;
+    folder_.Write(name, bytes);
+    return OptionsFor(name);
   }
   static std::string Replace(std::string text, const std::string& from,
                              const std::string& to) {
@@ -53,8 +51,7 @@ TEST_F(McapFileTest, ReadsWhatItsOwnLibraryWrites) {
 TEST_F(McapFileTest, ReadsAFolderOfRosbag2) {
   folder_.Write("bag/metadata.yaml", "rosbag2_bagfile_information:\n");
   Write("bag/bag_0.mcap", Bytes("ros2_zstd"));
-  SourceOptions options;
-  options.path = folder_ / "bag";
+  const SourceOptions options = OptionsFor("bag");
   ExpectFrames(OpenSource("auto", options).get(), kFrames);
   Write("bag/bag_1.mcap", Bytes("ros1_lz4"));
   ExpectRefusedSource(options, {"bag_1.mcap", "a different ROS version"});

@@ -106,6 +106,11 @@ class Ros1BagTest : public BagTest {
   void WriteInfo() {
     Write("/camera/rgb/camera_info", kStart, MakeInfo(SmallCamera().camera));
   }
+  // Begins a bag with the calibration of the camera.
+  void Begin() {
+    Open();
+    WriteInfo();
+  }
   void WriteColor(int k) {
     Write(kColor, StampOf(k) + 0.01,
           MakeImage(ColorImage(k), "bgr8", StampOf(k)));
@@ -116,7 +121,10 @@ class Ros1BagTest : public BagTest {
   }
   void WriteAll() {
     WriteInfo();
-    for (int k = 0; k < kFrames; ++k) {
+    WriteFrames(kFrames);
+  }
+  void WriteFrames(int count) {
+    for (int k = 0; k < count; ++k) {
       WriteColor(k);
       WriteDepth(k);
     }

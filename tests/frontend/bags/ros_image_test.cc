@@ -22,8 +22,7 @@ TEST_F(Ros1BagTest, ReadsColours) {
                         Case{"rgba8", {30, 20, 10, 255}, CV_8UC4, {10, 20, 30}},
                         Case{"bgra8", {10, 20, 30, 255}, CV_8UC4, {10, 20, 30}},
                         Case{"mono8", {20}, CV_8UC1, {20, 20, 20}}}) {
-    Open();
-    WriteInfo();
+    Begin();
     const cv::Mat image(kHeight, kWidth, c.type, c.value);
     Write(kColor, kStart, MakeImage(image, c.encoding, kStart));
     Write(kDepth, kStart, MakeImage(DepthImage(0), "16UC1", kStart));
@@ -37,8 +36,7 @@ TEST_F(Ros1BagTest, ReadsColours) {
 }
 
 TEST_F(Ros1BagTest, ReadsBigEndianDepth) {
-  Open();
-  WriteInfo();
+  Begin();
   WriteColor(0);
   cv::Mat depth(kHeight, kWidth, CV_16UC1, cv::Scalar(0x3412));
   sensor_msgs::Image message = MakeImage(depth, "16UC1", kStart + 0.004);
@@ -48,8 +46,7 @@ TEST_F(Ros1BagTest, ReadsBigEndianDepth) {
 }
 
 TEST_F(Ros1BagTest, ReadsMetres) {
-  Open();
-  WriteInfo();
+  Begin();
   for (int k = 0; k < kFrames; ++k) {
     WriteColor(k);
     cv::Mat metres;
@@ -71,8 +68,7 @@ TEST_F(Ros1BagTest, ReadsMetres) {
 
 TEST_F(Ros1BagTest, RefusesMillimetresThatAreCalledMetres) {
   for (const bool is_far : {false, true}) {  // infinite: farther than measured
-    Open();
-    WriteInfo();
+    Begin();
     WriteColor(0);
     cv::Mat depth;
     DepthImage(0).convertTo(depth, CV_32F, is_far ? 0.001 : 1.0);
@@ -90,8 +86,7 @@ TEST_F(Ros1BagTest, RefusesMillimetresThatAreCalledMetres) {
 
 TEST_F(Ros1BagTest, ReadsCompressedImages) {
   for (const bool is_metric : {false, true}) {
-    Open();
-    WriteInfo();
+    Begin();
     for (int k = 0; k < kFrames; ++k) {
       const std::string file =
           k % 2 == 0 ? EncodeJpeg(ColorImage(k), 95) : EncodePng(ColorImage(k));
@@ -129,8 +124,7 @@ TEST_F(Ros1BagTest, ReadsCompressedImages) {
 }
 
 TEST_F(Ros1BagTest, RefusesWrongImages) {
-  Open();
-  WriteInfo();
+  Begin();
   Write(kColor, kStart,
         MakeImage(cv::Mat(kHeight, kWidth, CV_8UC2), "yuv422", kStart));
   WriteDepth(0);
@@ -140,15 +134,13 @@ TEST_F(Ros1BagTest, RefusesWrongImages) {
   ExpectInputError([&] { OpenSource("auto", options)->Next()->read(); },
                    {"encoding 'yuv422'", "rgb8", kColor});
 
-  Open();
-  WriteInfo();
+  Begin();
   WriteColor(0);
   Write(kDepth, kStart,
         MakeImage(cv::Mat(kHeight / 2, kWidth / 2, CV_16UC1), "16UC1", kStart));
   ExpectRefused({kDepth, "16 x 12", "32 x 24"});
 
-  Open();
-  WriteInfo();
+  Begin();
   WriteColor(0);
   sensor_msgs::Image cut = MakeImage(DepthImage(0), "16UC1", kStart);
   cut.data.resize(100);
