@@ -35,7 +35,10 @@ inline cv::Mat DepthImage(int k) {
   return image;
 }
 
+// Writes an image file, and the folder above it.
 inline void WriteImage(const std::string& path, const cv::Mat& image) {
+  std::filesystem::create_directories(
+      std::filesystem::path(path).parent_path());
   if (std::filesystem::path(path).extension() == ".jpg") {
     WriteFileAtomically(path, EncodeJpeg(image, 95));
   } else {
@@ -57,8 +60,6 @@ class TumSequenceTest : public testing::Test {
                   "1.005 depth/0.png\n"
                   "1.039 depth/1.png\n"
                   "1.11 depth/3.png\n");
-    std::filesystem::create_directory(folder_ / "rgb");
-    std::filesystem::create_directory(folder_ / "depth");
     for (const int k : {0, 1, 3}) {
       const std::string type = k == 1 ? ".jpg" : ".png";
       WriteImage(folder_ / ("rgb/" + std::to_string(k) + type), ColorImage(k));

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "core/util/text_file.h"
 #include "frontend/sources/open_source.h"
 #include "tests/support/tum_sequence.h"
@@ -14,8 +12,6 @@ namespace {
 class IclNuimTest : public testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::create_directory(folder_ / "rgb");
-    std::filesystem::create_directory(folder_ / "depth");
     std::string pairs;
     for (int k = 0; k < 2; ++k) {
       const std::string number = std::to_string(k + 1);

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
@@ -32,6 +31,9 @@ void ExpectPose(const Rigid3d& pose, int k) {
             1e-9);
 }
 
+// The intrinsics of SmallCamera() in a file of ScanNet.
+constexpr char kMatrix[] = "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n";
+
 std::string Padded(int k) {
   const std::string digits = std::to_string(k);
   return std::string(6 - digits.size(), '0') + digits;
@@ -40,13 +42,9 @@ std::string Padded(int k) {
 class NumberedDatasetTest : public testing::Test {
  protected:
   void Write(const std::string& name, const cv::Mat& image) {
-    const std::string path = folder_ / name;
-    fs::create_directories(fs::path(path).parent_path());
-    WriteImage(path, image);
+    WriteImage(folder_ / name, image);
   }
   void WriteText(const std::string& name, const std::string& text) {
-    const std::string path = folder_ / name;
-    fs::create_directories(fs::path(path).parent_path());
     folder_.Write(name, text);
   }
   SourceOptions Options() const {
@@ -116,9 +114,8 @@ TEST_F(NumberedDatasetTest, ReadsScanNet) {
     Write("depth/" + number + ".png", DepthImage(k));
     WriteText("pose/" + number + ".txt", PoseText(k, "\n"));
   }
-  const std::string matrix = "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n";
-  WriteText("intrinsic/intrinsic_color.txt", matrix);
-  WriteText("intrinsic/intrinsic_depth.txt", matrix);
+  WriteText("intrinsic/intrinsic_color.txt", kMatrix);
+  WriteText("intrinsic/intrinsic_depth.txt", kMatrix);
   const std::string nowhere = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
   WriteText("intrinsic/extrinsic_color.txt", nowhere);
   WriteText("intrinsic/extrinsic_depth.txt", nowhere);
@@ -137,8 +134,7 @@ TEST_F(NumberedDatasetTest, ReadsScanNet) {
 TEST_F(NumberedDatasetTest, KnowsNotWhereScanNetsCamerasAre) {
   Write("color/0.jpg", ColorImage(0));
   Write("depth/0.png", DepthImage(0));
-  const std::string matrix = "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n";
-  WriteText("intrinsic/intrinsic_color.txt", matrix);
+  WriteText("intrinsic/intrinsic_color.txt", kMatrix);
   WriteText("intrinsic/extrinsic_depth.txt",
             "1 0 0 0.04\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   ExpectInputError([this] { OpenSource("scannet", Options()); },
@@ -154,8 +150,7 @@ TEST_F(NumberedDatasetTest, RegistersScanNetsSmallerDepth) {
   Write("depth/0.png", DepthImage(0));
   WriteText("intrinsic/intrinsic_color.txt",
             "60 0 31.5 0\n0 60 23.5 0\n0 0 1 0\n0 0 0 1\n");
-  WriteText("intrinsic/intrinsic_depth.txt",
-            "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n");
+  WriteText("intrinsic/intrinsic_depth.txt", kMatrix);
   const Frame frame = OpenSource("auto", Options())->Next()->read();
   EXPECT_EQ(frame.depth.size(), twice);
   EXPECT_EQ(cv::countNonZero(frame.depth == 1000), 4 * (kWidth * kHeight - 2));

@@ -26,7 +26,6 @@ class Record3dTest : public testing::Test {
 #ifndef RGBD_POSE_HAS_OPENEXR
     GTEST_SKIP() << "built without OpenEXR";
 #endif
-    fs::create_directory(folder_ / "rgb");
     fs::create_directory(folder_ / "depth");
     for (int k = 0; k < 3; ++k) {
       const std::string number = std::to_string(k);

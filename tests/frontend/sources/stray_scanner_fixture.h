@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <opencv2/videoio.hpp>
@@ -59,8 +58,6 @@ inline std::string StrayRowText(double timestamp, int number,
 class StrayScannerTest : public testing::Test {
  protected:
   StrayScannerTest() {
-    std::filesystem::create_directory(folder_ / "depth");
-    std::filesystem::create_directory(folder_ / "confidence");
     const Camera camera = PhoneCamera(kVideoWidth);
     folder_.Write("camera_matrix.csv",
                   Format("%.4f, 0.0, %.4f\n0.0, %.4f, %.4f\n0.0, 0.0, 1.0",

@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <thread>
 
-#include "frontend/files/camera_file.h"
+#include "frontend/sources/image_pairing.h"
 #include "frontend/sources/open_source.h"
 #include "tests/support/tum_sequence.h"
 
@@ -41,10 +40,12 @@ TEST_F(TumDatasetTest, AssociatesTheListsItself) {
 TEST_F(TumDatasetTest, AssociationsAloneAreEnough) {
   std::filesystem::remove(folder_ / "rgb.txt");
   std::filesystem::remove(folder_ / "depth.txt");
-  folder_.Write("associations.txt",
-                "1.00 rgb/0.png 1.005 depth/0.png\n"
-                "1.04 rgb/1.jpg 1.039 depth/1.png\n"
-                "1.10 rgb/3.png 1.11 depth/3.png\n");
+  UseAssociations(
+      "1.00 rgb/0.png 1.005 depth/0.png\n"
+      "1.04 rgb/1.jpg 1.039 depth/1.png\n"
+      "1.10 rgb/3.png 1.11 depth/3.png\n");
+  ExpectFrames(*OpenTum(options_));
+  options_.associations_file.clear();  // they are found in the folder
   ExpectFrames(*OpenTum(options_));
 }
 
@@ -129,18 +130,6 @@ TEST_F(TumDatasetTest, TellsAssociatedImagesApartByLookingAtThem) {
   EXPECT_EQ(dataset->Read(0).depth.at<uint16_t>(3, 3), 1000);
 }
 
-TEST_F(TumDatasetTest, NeedsNoListsBesideAssociations) {
-  std::filesystem::remove(folder_ / "rgb.txt");
-  std::filesystem::remove(folder_ / "depth.txt");
-  UseAssociations("1.00 rgb/0.png 1.005 depth/0.png\n");
-  EXPECT_EQ(OpenTum(options_)->size(), 1);
-}
-
-TEST_F(TumDatasetTest, MissesNoImageThatNoFrameNeeds) {
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "rgb/2.png"));
-  EXPECT_NO_THROW(OpenTum(options_));
-}
-
 TEST_F(TumDatasetTest, ReadsFromSeveralThreads) {
   const auto dataset = OpenTum(options_);
   std::vector<std::thread> threads(4);
@@ -152,11 +141,6 @@ TEST_F(TumDatasetTest, ReadsFromSeveralThreads) {
   for (std::thread& thread : threads) thread.join();
 }
 
-TEST_F(TumDatasetTest, RefusesAMissingFolder) {
-  options_.path = folder_ / "nowhere";
-  ExpectRefused({"nowhere", "folder"});
-}
-
 TEST_F(TumDatasetTest, RefusesBadOptions) {
   options_.max_time_difference = -0.1;
   ExpectRefused({"time difference"});
@@ -166,56 +150,83 @@ TEST_F(TumDatasetTest, RefusesBadOptions) {
   options_.camera = SmallCamera();
   options_.camera->camera.fx = 0.0;
   ExpectRefused({"camera: ", "fx"});
+  options_.camera = SmallCamera();
+  options_.path = folder_ / "nowhere";
+  ExpectRefused({"nowhere", "folder"});
 }
 
-TEST_F(TumDatasetTest, RefusesColorOfAnotherSize) {
+TEST_F(TumDatasetTest, RefusesImagesOfAnotherSizeOrKind) {
+  WriteImage(folder_ / "depth/0.png", ColorImage(0));
+  ExpectReadRefused({"depth/0.png", "16 bits", "CV_8UC3"});
+  WriteImage(folder_ / "depth/0.png", cv::Mat(24, 31, CV_16UC1, cv::Scalar(7)));
+  ExpectReadRefused({"depth/0.png", "31 x 24", "32 x 24"});
   WriteImage(folder_ / "rgb/0.png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(7)));
   ExpectReadRefused({"rgb/0.png", "64 x 48", "32 x 24"});
 }
 
-TEST_F(TumDatasetTest, RefusesDepthOfAnotherSize) {
-  WriteImage(folder_ / "depth/0.png", cv::Mat(24, 31, CV_16UC1, cv::Scalar(7)));
-  ExpectReadRefused({"depth/0.png", "31 x 24", "32 x 24"});
+using TumListsTest = TumSequenceTest;
+
+TEST_F(TumListsTest, ABadOneIsRefusedNamingFileAndLine) {
+  const std::string kRgb = "rgb.txt", kDepth = "depth.txt";
+  const std::string kPairs = "associations.txt";
+  const struct {
+    std::string file;  // the list to replace
+    std::string text;
+    std::vector<std::string> message_parts;
+  } kCases[] = {
+      {kRgb, "", {"rgb.txt: "}},
+      {kDepth, "# a\n\n", {"depth.txt: "}},
+      {kRgb, "# x\n1.04 rgb/1.jpg\n1.00 rgb/0.png\n", {":3:", "earlier"}},
+      {kRgb, "1.0 a.png\nnan b.jpg\n", {"rgb.txt:2:", "'nan'", "time stamp"}},
+      {kRgb, "rgb/0.png 1.0\n", {"rgb.txt:1:", "'rgb/0.png'"}},
+      {kRgb, "1.0 a.png\n\n1.04\n", {"rgb.txt:3:", "2 columns", "'1.04'"}},
+      {kDepth, "7.5 depth/0.png\n", {"rgb.txt", "depth.txt", "1.0", "7.5"}},
+      {kPairs, "#\n", {"associations.txt: "}},
+      {kPairs,
+       "1.00 rgb/0.png 1.005 depth/0.png\n1.04 rgb/1.jpg 1.039\n",
+       {"associations.txt:2:", "4 columns", "has 3", "'1.04 rgb/1.jpg 1.039'"}},
+      {kPairs, "rgb/0.png 1.00 depth/0.png 1.005\n", {":1:", "'rgb/0.png'"}},
+      {kPairs, "1.00 rgb/0.png nan depth/0.png\n", {":1:", "'nan'"}},
+      {kPairs,
+       "1.039 depth/1.png 1.04 rgb/1.jpg\n"
+       "1.005 depth/0.png 1.00 rgb/0.png\n",
+       {":2:", "earlier"}},
+      {kPairs,
+       "1.00 rgb/0.png 1.005 rgb/3.png\n",
+       {"associations.txt:1:", "colour", "depth", "rgb/3.png"}}};
+  for (const auto& bad : kCases) {
+    SCOPED_TRACE(bad.text);
+    SetUp();
+    options_.associations_file.clear();
+    const std::string path = folder_.Write(bad.file, bad.text);
+    if (bad.file == kPairs) options_.associations_file = path;
+    std::vector<std::string> message_parts = bad.message_parts;
+    message_parts.push_back(bad.file);
+    ExpectRefused(message_parts);
+  }
 }
 
-TEST_F(TumDatasetTest, RefusesDepthThatIsNoDepth) {
-  WriteImage(folder_ / "depth/0.png", ColorImage(0));
-  ExpectReadRefused({"depth/0.png", "16 bits", "CV_8UC3"});
+// Unreadable images are detected later, when they are read.
+TEST_F(TumListsTest, TakesOneImageOfATimeStamp) {
+  folder_.Write("depth.txt",
+                "1.005 depth/0.png\n1.005 depth/9.png\n1.04 depth/1.png\n");
+  const std::string remark = SameStampRemark(folder_.path(), 1);
+  auto dataset = OpenTum(options_);
+  ASSERT_EQ(dataset->size(), 2);
+  EXPECT_EQ(dataset->remarks(), std::vector<std::string>{remark});
+  EXPECT_EQ(dataset->Read(0).depth.at<uint16_t>(3, 3), 1000);
+  UseAssociations("1 rgb/0.png 1 depth/0.png\n1 rgb/1.jpg 1 depth/9.png\n");
+  dataset = OpenTum(options_);
+  EXPECT_EQ(dataset->size(), 1);
+  EXPECT_EQ(dataset->remarks(), std::vector<std::string>{remark});
 }
 
-// Real sequences, which are not part of the project, in the folder
-// RGBD_POSE_TEST_DATA.
-class RealTumDatasetTest : public testing::TestWithParam<const char*> {};
-
-TEST_P(RealTumDatasetTest, IsReadInFull) {
-  const char* data = std::getenv("RGBD_POSE_TEST_DATA");
-  if (data == nullptr) {
-    GTEST_SKIP() << "needs " << GetParam() << " in RGBD_POSE_TEST_DATA";
-  }
-  SourceOptions options;
-  options.path = std::string(data) + "/" + GetParam();
-  options.camera = ReadCameraFile(options.path + "/camera.yaml");
-  const auto dataset = OpenTum(options);
-  ASSERT_GT(dataset->size(), 0);
-  for (const int i : {0, dataset->size() - 1}) {
-    const Frame frame = dataset->Read(i);
-    EXPECT_EQ(frame.gray.size(), frame.depth.size());
-    EXPECT_GT(cv::countNonZero(frame.depth), 0);
-  }
-  // The sequence's association file, if there is one, gives the same result.
-  options.associations_file = options.path + "/associations.txt";
-  if (!std::filesystem::exists(options.associations_file)) return;
-  const auto associated = OpenTum(options);
-  ASSERT_EQ(associated->size(), dataset->size());
-  for (int i = 0; i < dataset->size(); ++i) {
-    EXPECT_EQ(associated->timestamp(i), dataset->timestamp(i));
-  }
+TEST_F(TumListsTest, RefusesAMissingList) {
+  std::filesystem::remove(folder_ / "rgb.txt");
+  ExpectRefused({"rgb.txt: missing"});
+  options_.associations_file = folder_ / "pairs.txt";
+  ExpectRefused({"pairs.txt"});
 }
-
-INSTANTIATE_TEST_SUITE_P(Tum, RealTumDatasetTest,
-                         testing::Values("redkitchen400", "tum_fr1_360_5",
-                                         "tum_fr1_xyz_3", "tum_fr2_hall50"),
-                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace rgbd_pose

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/imu_beside.h"
 #include "frontend/sources/open_source.h"
+#include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {
 namespace {
@@ -23,38 +23,34 @@ namespace fs = std::filesystem;
 
 class TumWriterTest : public testing::Test {
  protected:
-  TumWriterTest()
-      : parent_(fs::path(testing::TempDir()) /
-                ("tum_writer_" + std::string(testing::UnitTest::GetInstance()
-                                                 ->current_test_info()
-                                                 ->name()))),
-        folder_(parent_ / "new" / "sequence") {
-    fs::remove_all(parent_);
+  TumWriterTest() {
     options_.frames = 4;
     options_.camera.camera = {160,       120,  130.5, 131.25, 79.5, 59.5,
                               0.1 / 3.0, 0.02, 0.0,   0.001,  0.0};
     options_.camera.depth_scale = 1000.0;
   }
-  ~TumWriterTest() override { fs::remove_all(parent_); }
-
-  static void Write(SyntheticDataset* dataset, const std::string& folder,
-                    const TumWriterOptions& writer) {
-    WriteTumSequence(dataset, folder, writer);
-  }
 
   void Write(const std::string& folder, const TumWriterOptions& writer = {}) {
     SyntheticDataset dataset(options_);
-    Write(&dataset, folder, writer);
+    WriteTumSequence(&dataset, folder, writer);
+  }
+  // Reads the written sequence with the camera that was written.
+  SourceOptions Written() const {
+    SourceOptions options;
+    options.path = folder_;
+    options.camera = ReadCameraFile(folder_ + "/camera.yaml");
+    return options;
   }
 
-  fs::path parent_;
-  fs::path folder_;
+  const TempFolder parent_;
+  const std::string folder_ = parent_ / "new/sequence";
   SyntheticOptions options_;
 };
 
 TEST_F(TumWriterTest, KeepsTheInertialSensor) {
   SyntheticImuOptions imu;
-  imu.cam_from_imu = Rigid3d({0, 1, 0, 0}, {0.01, 0.02, 0.03});
+  imu.cam_from_imu =
+      Rigid3d::FromRotationVector({0.7, -1.1, 0.4}, {0.01, 0.02, 0.03});
   imu.delay_s = 0.005;
   auto dataset = std::make_unique<SyntheticDataset>(options_);
   const std::vector<ImuSample> samples = dataset->SimulateImu(imu);
@@ -68,8 +64,8 @@ TEST_F(TumWriterTest, KeepsTheInertialSensor) {
   const auto read = OpenSource("auto", options);
   ASSERT_TRUE(read->imu().has_value());
   const ImuCalibration known = read->imu()->calibration;
-  EXPECT_TRUE(known.cam_from_imu->translation.isApprox(
-      imu.cam_from_imu.translation, 1e-12));
+  EXPECT_TRUE((*known.cam_from_imu * Eigen::Vector3d(1, 2, 3))
+                  .isApprox(imu.cam_from_imu * Eigen::Vector3d(1, 2, 3)));
   EXPECT_EQ(known.delay_s, 0.005);
   EXPECT_EQ(known.noise->gyro_walk, imu.densities.gyro_walk);
   std::vector<ImuSample> all;
@@ -85,23 +81,38 @@ TEST_F(TumWriterTest, KeepsTheInertialSensor) {
   }
 }
 
-TEST_F(TumWriterTest, WritesNothingInertialWithoutASensor) {
+TEST_F(TumWriterTest, WritesWhatIsKnownOfTheCameraAlone) {
   Write(folder_);
-  EXPECT_FALSE(fs::exists(folder_ / "imu.csv"));
-  EXPECT_FALSE(fs::exists(folder_ / "imu.yaml"));
+  // A simulated shutter is known, even if all rows are exposed at once.
+  EXPECT_NE(ReadTextFile(folder_ + "/camera.yaml").find("color_readout: 0"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ + "/imu.csv"));
+  EXPECT_FALSE(fs::exists(folder_ + "/imu.yaml"));
 }
 
 TEST_F(TumWriterTest, ReadsBackAsWritten) {
+  options_.color_shutter = {-0.0075, 0.028};
+  options_.depth_shutter = {0.0125, -0.027};
   SyntheticDataset dataset(options_);
   std::vector<int> told;
   TumWriterOptions writer;
   writer.progress = [&told](int done) { told.push_back(done); };
-  Write(&dataset, folder_.string() + "/", writer);
+  WriteTumSequence(&dataset, folder_ + "/", writer);
   EXPECT_EQ(told, (std::vector<int>{1, 2, 3, 4}));
 
-  SourceOptions options;
-  options.path = folder_.string();
-  options.camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  SourceOptions options = Written();
+  const RgbdCamera camera = RegisteredCamera(*options.camera);
+  EXPECT_EQ(camera.depth_scale, 1000.0);
+  for (const CameraParameter& parameter : kCameraParameters) {
+    EXPECT_EQ(camera.camera.*parameter.value,
+              options_.camera.camera.*parameter.value)
+        << parameter.name;
+  }
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    EXPECT_EQ(camera.*parameter.image.*parameter.value,
+              dataset.camera().*parameter.image.*parameter.value)
+        << parameter.name;
+  }
   options.keep_color = true;
   const auto read = OpenTum(options);
   ASSERT_EQ(read->size(), dataset.size());
@@ -111,8 +122,7 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
     EXPECT_EQ(cv::norm(frame.color, written.color, cv::NORM_INF), 0.0);
     EXPECT_EQ(cv::norm(frame.depth, written.depth, cv::NORM_INF), 0.0);
   }
-  const Trajectory truth =
-      ReadTrajectory((folder_ / "groundtruth.txt").string());
+  const Trajectory truth = ReadTrajectory(folder_ + "/groundtruth.txt");
   ASSERT_EQ(truth.size(), 4u);
   constexpr double kTolerance = 1e-9;  // rounding of the text
   for (int i = 0; i < dataset.size(); ++i) {
@@ -146,9 +156,9 @@ TEST_F(TumWriterTest, KeepsGrayLevelsThatAreNotThoseOfTheColours) {
     Frame frame_;
   };
   Unrelated source(options_.camera);
-  WriteTumSequence(&source, folder_.string());
+  WriteTumSequence(&source, folder_);
   SourceOptions options;
-  options.path = folder_.string();
+  options.path = folder_;
   EXPECT_EQ(cv::norm(OpenTum(options)->Read(0).gray, source.Read(0).gray,
                      cv::NORM_INF),
             0.0);
@@ -156,11 +166,8 @@ TEST_F(TumWriterTest, KeepsGrayLevelsThatAreNotThoseOfTheColours) {
 
 TEST_F(TumWriterTest, DepthHasItsOwnTime) {
   options_.depth_delay_s = -0.0125;
-  Write(folder_.string());
-  SourceOptions options;
-  options.path = folder_.string();
-  options.camera = options_.camera;
-  const auto read = OpenTum(options);
+  Write(folder_);
+  const auto read = OpenTum(Written());
   ASSERT_EQ(read->size(), 4);
   for (int i = 0; i < read->size(); ++i) {
     EXPECT_EQ(read->timestamp(i), SyntheticDataset(options_).timestamp(i));
@@ -171,8 +178,8 @@ TEST_F(TumWriterTest, DepthHasItsOwnTime) {
 
 // Depth images in another order, one for two frames.
 TEST_F(TumWriterTest, KeepsPairsThatAreNotNearestInTime) {
-  Write(folder_.string());
-  const std::string list = (parent_ / "pairs.txt").string();
+  Write(folder_);
+  const std::string list = parent_ / "pairs.txt";
   const SyntheticDataset dataset(options_);
   const auto name = [&](const std::string& kind, int i) {
     const std::string stamp = Format("%.6f", dataset.timestamp(i));
@@ -182,12 +189,10 @@ TEST_F(TumWriterTest, KeepsPairsThatAreNotNearestInTime) {
                                 name("rgb", 1) + " " + name("depth", 0) + "\n" +
                                 name("rgb", 2) + " " + name("depth", 2) + "\n" +
                                 name("rgb", 3) + " " + name("depth", 2) + "\n");
-  SourceOptions options;
-  options.path = folder_.string();
-  options.camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  SourceOptions options = Written();
   options.associations_file = list;
   const auto given = OpenTum(options);
-  const std::string copy = (parent_ / "copy").string();
+  const std::string copy = parent_ / "copy";
   TumWriterOptions writer;
   writer.threads = 4;
   const WrittenSequence written =
@@ -213,51 +218,15 @@ TEST_F(TumWriterTest, ALinkToAnEmptyFolderIsFollowed) {
   fs::create_directory_symlink(folder_, link);
   Write(link.string());
   EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
-}
-
-TEST_F(TumWriterTest, CameraReadsBackExactly) {
-  Write(folder_.string());
-  const CameraSetup camera = ReadCameraFile((folder_ / "camera.yaml").string());
-  EXPECT_EQ(camera.depth_scale, 1000.0);
-  EXPECT_EQ(camera.camera.width, 160);
-  EXPECT_EQ(camera.camera.height, 120);
-  EXPECT_EQ(camera.camera.fx, 130.5);
-  EXPECT_EQ(camera.camera.fy, 131.25);
-  EXPECT_EQ(camera.camera.cx, 79.5);
-  EXPECT_EQ(camera.camera.cy, 59.5);
-  EXPECT_EQ(camera.camera.k1, 0.1 / 3.0);
-  EXPECT_EQ(camera.camera.k2, 0.02);
-  EXPECT_EQ(camera.camera.p1, 0.0);
-  EXPECT_EQ(camera.camera.p2, 0.001);
-  EXPECT_EQ(camera.camera.k3, 0.0);
-}
-
-TEST_F(TumWriterTest, CameraSaysWhenRowsAreExposed) {
-  // A simulated shutter is known, even if all rows are exposed at once.
-  const fs::path global = parent_ / "global";
-  Write(global.string());
-  EXPECT_NE(
-      ReadTextFile((global / "camera.yaml").string()).find("color_readout: 0"),
-      std::string::npos);
-  options_.color_shutter = {-0.0075, 0.028};
-  options_.depth_shutter = {0.0125, -0.027};
-  Write(folder_.string());
-  const CameraSetup camera = ReadCameraFile((folder_ / "camera.yaml").string());
-  EXPECT_EQ(camera.color_shutter.offset, -0.0075);
-  EXPECT_EQ(camera.color_shutter.readout, 0.028);
-  EXPECT_EQ(camera.depth_shutter.offset, 0.0125);
-  EXPECT_EQ(camera.depth_shutter.readout, -0.027);
+  EXPECT_TRUE(fs::exists(folder_ + "/rgb.txt"));
 }
 
 TEST_F(TumWriterTest, TakesAnEmptyFolderButNoOther) {
   fs::create_directories(folder_);
-  Write(folder_.string());
-  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
-  EXPECT_THROW(Write(folder_.string()), InputError);
-  const fs::path file = parent_ / "file";
-  std::ofstream(file.string()) << "text";
-  EXPECT_THROW(Write(file.string()), InputError);
+  Write(folder_);
+  EXPECT_TRUE(fs::exists(folder_ + "/rgb.txt"));
+  EXPECT_THROW(Write(folder_), InputError);
+  EXPECT_THROW(Write(parent_.Write("file", "text")), InputError);
 }
 
 TEST_F(TumWriterTest, LeavesNothingIfItFails) {
@@ -265,14 +234,14 @@ TEST_F(TumWriterTest, LeavesNothingIfItFails) {
   writer.progress = [](int done) {
     if (done == 2) throw std::runtime_error("stop");
   };
-  EXPECT_THROW(Write(folder_.string(), writer), std::runtime_error);
-  EXPECT_TRUE(fs::is_empty(folder_.parent_path()));
+  EXPECT_THROW(Write(folder_, writer), std::runtime_error);
+  EXPECT_TRUE(fs::is_empty(parent_ / "new"));
 }
 
 TEST_F(TumWriterTest, KeepsWhatThereIsWhenItIsStopped) {
   options_.frames = 60;
   for (const int threads : {1, 3}) {
-    const std::string folder = folder_.string() + std::to_string(threads);
+    const std::string folder = folder_ + std::to_string(threads);
     TumWriterOptions writer;
     writer.threads = threads;
     writer.stop = [done = 0]() mutable { return ++done < 2 ? "" : "a signal"; };
@@ -299,18 +268,16 @@ TEST_F(TumWriterTest, IsNotStoppedAtItsLastFrame) {
   TumWriterOptions writer;
   writer.threads = 1;
   writer.stop = [done = 0]() mutable { return ++done < 4 ? "" : "a signal"; };
-  const WrittenSequence written =
-      WriteTumSequence(&dataset, folder_.string(), writer);
+  const WrittenSequence written = WriteTumSequence(&dataset, folder_, writer);
   EXPECT_EQ(written.frames, 4);
   EXPECT_EQ(written.stopped, "");
 }
 
 TEST_F(TumWriterTest, IsUndisturbedByWhatAnEarlierRunLeft) {
-  const fs::path left = folder_.string() + ".partial";
-  fs::create_directories(left);
-  std::ofstream((left / "old.txt").string()) << "text";
-  Write(folder_.string());
-  EXPECT_FALSE(fs::exists(folder_ / "old.txt"));
+  const std::string left = folder_ + ".partial";
+  parent_.Write("new/sequence.partial/old.txt", "text");
+  Write(folder_);
+  EXPECT_FALSE(fs::exists(folder_ + "/old.txt"));
   EXPECT_FALSE(fs::exists(left));
 }
 
