@@ -48,20 +48,25 @@ double DistanceTo(const Scene& scene, const Eigen::Vector3d& point) {
   return nearest;
 }
 
+// The mean distance (m) of the vertices from the surfaces of the simulation.
+double MeanDistance(const TriangleMesh& mesh, const SyntheticOptions& options) {
+  const Scene scene = MakeScene(options.scene, options.seed);
+  double sum = 0.0;
+  for (const ColoredPoint& vertex : mesh.vertices) {
+    sum += DistanceTo(scene, vertex.position.cast<double>());
+  }
+  return sum / static_cast<double>(mesh.vertices.size());
+}
+
 TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
   const SyntheticOptions options = MeshRoom();
   const SyntheticDataset dataset(options);
   const TriangleMesh mesh = Fuse(dataset);
   ASSERT_GT(mesh.triangles.size(), 100000);
 
-  const Scene scene = MakeScene(options.scene, options.seed);
-  double sum = 0.0;
-  for (const ColoredPoint& vertex : mesh.vertices) {
-    sum += DistanceTo(scene, vertex.position.cast<double>());
-  }
   // The accuracy required for 1 cm voxels. Here only six views are used, with
   // depth twice as noisy as in images of twice the size.
-  EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.005);
+  EXPECT_LT(MeanDistance(mesh, options), 0.005);
 
   // Triangles face the cameras, which have moved little. Noise may flip
   // triangles at the border or on slanted surfaces.
@@ -134,12 +139,7 @@ TEST(MeshFusionTest, ThinIsTheSameSurface) {
   const TriangleMesh thin = SimplifyMesh(mesh, 0.01F, kMost);
   EXPECT_LE(thin.triangles.size(), kMost);
   EXPECT_GT(thin.triangles.size(), kMost / 2);
-  const Scene scene = MakeScene(options.scene, options.seed);
-  double sum = 0.0;
-  for (const ColoredPoint& vertex : thin.vertices) {
-    sum += DistanceTo(scene, vertex.position.cast<double>());
-  }
-  EXPECT_LT(sum / static_cast<double>(thin.vertices.size()), 0.01);
+  EXPECT_LT(MeanDistance(thin, options), 0.01);
 }
 
 // A wall seen through a distorting lens is flat.
@@ -150,13 +150,8 @@ TEST(MeshFusionTest, DistortionIsTakenOut) {
   options.camera = *CameraPreset("tum_fr1");
   const SyntheticDataset dataset(options);
   const TriangleMesh mesh = Fuse(dataset);
-  const Scene scene = MakeScene(options.scene, options.seed);
-  double sum = 0.0;
-  for (const ColoredPoint& vertex : mesh.vertices) {
-    sum += DistanceTo(scene, vertex.position.cast<double>());
-  }
   ASSERT_GT(mesh.vertices.size(), 10000);
-  EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.002);
+  EXPECT_LT(MeanDistance(mesh, options), 0.002);
 }
 
 TEST(MeshFusionTest, RefusesWhatMakesNoSense) {

@@ -63,16 +63,6 @@ TEST(VoxelCloudTest, MillionsOfPointsOfACubeKeepTheirMean) {
   EXPECT_NEAR(mean.position.x(), 0.9F, 0.01F);
 }
 
-TEST(VoxelCloudTest, ZeroIsABorderLikeAnyOther) {
-  VoxelCloud cloud(1.0F);
-  for (const float x : {-0.5F, 0.5F}) {
-    for (const float y : {-0.5F, 0.5F}) {
-      for (const float z : {-0.5F, 0.5F}) cloud.Add(Point(x, y, z));
-    }
-  }
-  EXPECT_EQ(cloud.size(), 8);
-}
-
 // Compares with a std::map while the hash table grows many times.
 TEST(VoxelCloudTest, CountsTheCubesThatAMapCounts) {
   constexpr int kPoints = 200000;
@@ -99,17 +89,6 @@ TEST(VoxelCloudTest, CountsTheCubesThatAMapCounts) {
     EXPECT_EQ(cubes.erase({cell(0), cell(1), cell(2)}), 1u);
   }
   EXPECT_TRUE(cubes.empty());
-}
-
-TEST(VoxelCloudTest, PointsOfKnownCubesAddNone) {
-  VoxelCloud cloud(0.02F);
-  const std::vector<ColoredPoint> plate = Plate(400);
-  for (const ColoredPoint& point : plate) cloud.Add(point);
-  const int size = cloud.size();
-  for (int again = 0; again < 20; ++again) {
-    for (const ColoredPoint& point : plate) cloud.Add(point);
-  }
-  EXPECT_EQ(cloud.size(), size);
 }
 
 TEST(VoxelCloudTest, LeavesOutWhatIsNoPlace) {

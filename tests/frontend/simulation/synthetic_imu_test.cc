@@ -25,9 +25,8 @@ TEST(SyntheticImuTest, MeasuresARotationAndItsLever) {
   SyntheticImuOptions options = Exact();
   // 3 rad/s about the camera's z axis, which is level; the sensor is 2 cm off
   // along x and turned by a quarter about z.
-  options.cam_from_imu = Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
-                                     M_PI / 2.0, Eigen::Vector3d::UnitZ())),
-                                 {0.02, 0.0, 0.0});
+  options.cam_from_imu =
+      Rigid3d::FromRotationVector({0.0, 0.0, M_PI / 2.0}, {0.02, 0.0, 0.0});
   const auto path = [](double t) {
     return Rigid3d(Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitX()) *
                        Eigen::AngleAxisd(3.0 * t, Eigen::Vector3d::UnitZ()),

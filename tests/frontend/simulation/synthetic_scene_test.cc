@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -11,6 +10,7 @@
 
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
@@ -153,8 +153,7 @@ TEST(SyntheticSceneTest, ToursSeeTextureWithinReach) {
 TEST(SyntheticSceneTest, HighlightsOfTheGlossyRoomFollowTheCamera) {
   const Camera camera = SceneCamera();
   const Rigid3d here = PoseOf("xyz", 0.0);
-  const Rigid3d there =
-      here * Rigid3d(Eigen::Quaterniond::Identity(), {0.6, 0.0, 0.0});
+  const Rigid3d there = here * Moved(0.6, 0.0, 0.0);
   const Rendering glossy = Look("glossy_room", here);
   const Rendering from_there = Look("glossy_room", there);
   const cv::Mat paint = Gray(Look("room", here));

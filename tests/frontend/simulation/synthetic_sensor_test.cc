@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "core/geometry/twist.h"
 #include "frontend/simulation/synthetic_hash.h"
+#include "frontend/simulation/synthetic_path.h"
 
 namespace rgbd_pose {
 namespace {
@@ -114,14 +117,6 @@ TEST(SyntheticSensorTest, NoDepthOnSurfacesSeenAtASlant) {
   EXPECT_FALSE(valid(-84.0));
 }
 
-TEST(SyntheticSensorTest, NoiseDependsOnTheKeyAlone) {
-  const cv::Mat wall(40, 40, CV_32FC1, cv::Scalar(2.0));
-  const cv::Mat depth = MeasureDepth(wall, kSensorFocal, kKey);
-  EXPECT_EQ(
-      cv::norm(depth, MeasureDepth(wall, kSensorFocal, kKey), cv::NORM_INF), 0);
-  EXPECT_GT(cv::norm(depth, MeasureDepth(wall, kSensorFocal, kKey + 7000)), 0);
-}
-
 TEST(SyntheticSensorTest, ColorNoiseHasItsSigma) {
   constexpr double kGray = 100.0;
   cv::Mat color(200, 300, CV_8UC3, cv::Scalar::all(kGray));
@@ -139,6 +134,120 @@ TEST(SyntheticSensorTest, EncodesDepthInRawUnits) {
   ASSERT_EQ(raw.type(), CV_16UC1);
   EXPECT_EQ(raw.at<uint16_t>(0), 0);
   EXPECT_EQ(raw.at<uint16_t>(1), 5000);
+}
+
+constexpr double kFocal = 131.25;
+
+// A smaller image with the same field of view, for speed.
+Renderer RoomRenderer() {
+  return Renderer(MakeScene("room", 1),
+                  {160, 120, kFocal, kFocal, 79.5, 59.5, 0, 0, 0});
+}
+
+Rigid3d Handheld(double t) { return FindSyntheticPath("handheld")(t, 5.0); }
+
+double MeanDifference(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference;
+  cv::absdiff(a, b, difference);
+  const cv::Scalar mean = cv::mean(difference);
+  return (mean[0] + mean[1] + mean[2]) / 3.0;
+}
+
+// Mean colour while the shutter is open, with more renderings than needed.
+cv::Mat MeanColor(const Renderer& renderer, double opening, double closing) {
+  constexpr int kRenderings = 40;
+  cv::Mat sum = cv::Mat::zeros(120, 160, CV_32FC3);
+  for (int i = 0; i < kRenderings; ++i) {
+    const double t = opening + (closing - opening) * (i + 0.5) / kRenderings;
+    cv::add(sum, renderer.Render(Handheld(t)).color, sum, cv::noArray(),
+            CV_32F);
+  }
+  cv::Mat mean;
+  sum.convertTo(mean, CV_8U, 1.0 / kRenderings);
+  return mean;
+}
+
+TEST(SyntheticExposureTest, BlurIsTheMeanAroundTheMiddle) {
+  const Renderer renderer = RoomRenderer();
+  constexpr double kMiddle = 1.0;    // s; the camera is fast there
+  constexpr double kShutter = 0.03;  // s
+  const Rendering blurred =
+      Expose(renderer, kFocal, Handheld, kMiddle, {kShutter, 1.0});
+  const Rendering sharp = renderer.Render(Handheld(kMiddle));
+  EXPECT_EQ(cv::norm(blurred.depth, sharp.depth, cv::NORM_INF), 0.0);
+
+  const auto difference = [&](double opening) {
+    return MeanDifference(blurred.color,
+                          MeanColor(renderer, opening, opening + kShutter));
+  };
+  const double centred = difference(kMiddle - kShutter / 2.0);
+  // Steps of 2 px leave traces of fine print: about one gray level.
+  EXPECT_LT(centred, 1.5);
+  EXPECT_GT(MeanDifference(blurred.color, sharp.color), 3.0 * centred);
+  EXPECT_GT(difference(kMiddle), 3.0 * centred);
+  EXPECT_GT(difference(kMiddle - kShutter), 3.0 * centred);
+}
+
+// The last band of an image may be incomplete.
+TEST(SyntheticExposureTest, ShowsEachBandOfRowsAtItsTime) {
+  constexpr int kRows = 100;
+  const Renderer renderer(MakeScene("room", 1),
+                          {160, kRows, kFocal, kFocal, 79.5, 49.5, 0, 0, 0});
+  constexpr double kMiddle = 1.0;  // s; the camera is fast there
+  const cv::Mat instant = renderer.Render(Handheld(kMiddle)).depth;
+  for (const double readout : {0.03, -0.03}) {
+    const Shutter shutter = {0.0, readout};
+    const cv::Mat rolled =
+        Expose(renderer, kFocal, Handheld, kMiddle, {0.0, 1.0, readout}).depth;
+    for (int first = 0; first < kRows; first += Renderer::kBandRows) {
+      const cv::Range rows(first, std::min(first + Renderer::kBandRows, kRows));
+      const double middle = (rows.start + rows.end - 1) / 2.0;
+      const Rigid3d pose = Handheld(kMiddle + shutter.RowTime(middle, kRows));
+      const cv::Mat then = renderer.Render(pose).depth.rowRange(rows);
+      // A pixel or two differ at edges, where faces overlap.
+      EXPECT_LE(cv::countNonZero(then != rolled.rowRange(rows)), 2) << first;
+      if (std::abs(middle - kRows / 2) < Renderer::kBandRows) continue;
+      EXPECT_GT(
+          cv::countNonZero(instant.rowRange(rows) != rolled.rowRange(rows)),
+          500)
+          << first;
+    }
+  }
+}
+
+TEST(SyntheticExposureTest, AStillCameraBlursNothing) {
+  const Renderer renderer = RoomRenderer();
+  const auto still = [](double) { return Handheld(1.0); };
+  const Rendering image = Expose(renderer, kFocal, still, 1.0, {0.03, 1.0});
+  const cv::Mat sharp = renderer.Render(Handheld(1.0)).color;
+  EXPECT_EQ(cv::norm(image.color, sharp, cv::NORM_INF), 0.0);
+}
+
+TEST(SyntheticExposureTest, GainSaturates) {
+  const Renderer renderer = RoomRenderer();
+  const cv::Mat once = renderer.Render(Handheld(0.0)).color;
+  const cv::Mat twice =
+      Expose(renderer, kFocal, Handheld, 0.0, {0.0, 2.0}).color;
+  int saturated = 0;
+  for (int v = 0; v < once.rows; ++v) {
+    const uint8_t* row = once.ptr<uint8_t>(v);
+    for (int i = 0; i < 3 * once.cols; ++i) {
+      EXPECT_EQ(twice.ptr<uint8_t>(v)[i], std::min(2 * row[i], 255));
+      saturated += row[i] > 127;
+    }
+  }
+  EXPECT_GT(saturated, 0) << "the image is too dark to show it";
+}
+
+TEST(SyntheticExposureTest, DriftSwingsAroundOne) {
+  constexpr double kTolerance = 1e-12;  // rounding
+  EXPECT_EQ(DriftingGain(0.0, 1.234), 1.0);
+  EXPECT_EQ(DriftingGain(0.3, 0.0), 1.0);
+  EXPECT_NEAR(DriftingGain(0.3, kExposurePeriod / 4), std::exp(0.3),
+              kTolerance);
+  EXPECT_NEAR(DriftingGain(0.3, kExposurePeriod * 3 / 4), std::exp(-0.3),
+              kTolerance);
+  EXPECT_NEAR(DriftingGain(0.3, kExposurePeriod), 1.0, kTolerance);
 }
 
 }  // namespace
