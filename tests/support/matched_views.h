@@ -59,6 +59,15 @@ class MatchedViews {
     return errors;
   }
 
+  static void ExpectSame(const FeatureMatches& a, const FeatureMatches& b) {
+    ASSERT_EQ(a.features, b.features);
+    for (size_t i = 0; i < a.matches.size(); ++i) {
+      EXPECT_EQ(a.matches[i].cur.u, b.matches[i].cur.u);
+      EXPECT_EQ(a.matches[i].cur.v, b.matches[i].cur.v);
+      EXPECT_EQ(a.matches[i].cur.sigma_px, b.matches[i].cur.sigma_px);
+    }
+  }
+
   // `wrong_px`: a match with a larger error counts as an outlier.
   void ExpectMostlyRight(const FeatureMatches& found, size_t min_matches,
                          double median_px, double wrong_px) const {
@@ -97,6 +106,8 @@ class MatchedViews {
   }
 
   const RenderedOnce& dataset_ = Room();
+  const Frame prev_ = dataset_.Read(kPrev);
+  const Frame cur_ = dataset_.Read(kCur);
   std::unique_ptr<Frontend> frontend_;
   Rigid3d cur_from_prev_;
 };

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/util/input_error.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
@@ -61,8 +62,7 @@ TEST_F(PointFrontendTest, LeavesOutPointsWithoutDepth) {
 }
 
 TEST_F(PointFrontendTest, StartsWhereTheGuessHasThem) {
-  const Rigid3d guess(Eigen::Quaterniond::Identity(), {0.04, 0.0, 0.0});
-  const FeatureMatches found = MatchWithItself(guess);
+  const FeatureMatches found = MatchWithItself(Moved(0.04, 0.0, 0.0));
   ASSERT_EQ(found.matches.size(), 2u);
   // 0.04 m at 2 m: fx * 0.02
   EXPECT_NEAR(found.matches[0].cur.u, 100.0 + 0.02 * camera_.fx, 1e-4);
@@ -72,8 +72,7 @@ TEST_F(PointFrontendTest, StartsWhereTheGuessHasThem) {
 TEST_F(PointFrontendTest, LeavesOutWhatIsNotFoundOrOutOfTheImage) {
   frontend_.missing = 0;
   EXPECT_EQ(MatchWithItself(Rigid3d()).features, std::vector<int>{1});
-  const Rigid3d far_away(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0});
-  EXPECT_TRUE(MatchWithItself(far_away).features.empty());
+  EXPECT_TRUE(MatchWithItself(Moved(-1.0, 0.0, 0.0)).features.empty());
 }
 
 TEST_F(PointFrontendTest, RefusesAnAnswerThatLeavesPointsOut) {

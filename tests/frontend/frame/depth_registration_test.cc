@@ -7,6 +7,7 @@
 #include "frontend/frame/frame.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
@@ -58,10 +59,9 @@ TEST_P(RegistrationOfLensesTest, IsWhatTheColourCameraWouldHaveSeen) {
   Camera depth_camera = CameraOfSize(400, 300, 290.0);
   ASSERT_TRUE(
       depth_camera.SetDistortion(GetParam().depth_model, GetParam().depth));
-  const Rigid3d color_from_depth(
-      Eigen::Quaterniond(Eigen::AngleAxisd(
-          0.02, Eigen::Vector3d(1.0, -2.0, 0.5).normalized())),
-      {0.025, -0.003, 0.004});
+  const Rigid3d color_from_depth =
+      Moved(0.025, -0.003, 0.004) *
+      Turned(0.02, Eigen::Vector3d(1.0, -2.0, 0.5).normalized());
   SyntheticOptions raw = options;
   raw.depth_camera = DepthCamera{depth_camera, color_from_depth};
   const SyntheticDataset depth(raw);
@@ -129,8 +129,7 @@ TEST(DepthRegistrationTest, WhatIsNearHidesWhatIsBehind) {
   // A near half that covers a part of the far half when seen from the side.
   cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(4.0 * kUnits));
   depth.colRange(0, 32).setTo(1.0 * kUnits);
-  const Rigid3d color_from_depth(Eigen::Quaterniond::Identity(),
-                                 {0.2, 0.0, 0.0});
+  const Rigid3d color_from_depth = Moved(0.2, 0.0, 0.0);
   const cv::Mat registered =
       DepthRegistration({camera, color_from_depth}, camera)
           .Register(depth, kUnits);
@@ -159,8 +158,7 @@ TEST(DepthRegistrationTest, KeepsHolesAndFillsNone) {
 TEST(DepthRegistrationTest, LeavesOutWhatIsBehindTheCamera) {
   const Camera camera = CameraOfSize(64, 48, 50.0);
   const cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(1.0 * kUnits));
-  const Rigid3d color_from_depth(Eigen::Quaterniond::Identity(),
-                                 {0.0, 0.0, -2.0});
+  const Rigid3d color_from_depth = Moved(0.0, 0.0, -2.0);
   EXPECT_EQ(
       cv::countNonZero(DepthRegistration({camera, color_from_depth}, camera)
                            .Register(depth, kUnits)),

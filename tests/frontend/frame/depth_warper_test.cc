@@ -10,6 +10,7 @@
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_scene.h"
 #include "frontend/simulation/synthetic_sensor.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
@@ -23,10 +24,6 @@ Frame FrameOf(const cv::Mat& depth_m) {
   Frame frame;
   frame.depth = EncodeDepth(depth_m, frame.depth_scale);
   return frame;
-}
-
-Rigid3d Shift(double x, double y, double z) {
-  return Rigid3d(Eigen::Quaterniond::Identity(), {x, y, z});
 }
 
 // A wall 2 m away, and a board over some columns in front of it, 1 m away.
@@ -53,7 +50,7 @@ TEST(DepthWarperTest, StandingStillChangesNothing) {
 TEST(DepthWarperTest, GoingAheadBringsAllNearer) {
   const Frame frame = BoardAndWall(0, 0);
   DepthWarper mover(MovedCamera());
-  const cv::Mat& moved = mover.Move(frame, Shift(0.0, 0.0, -0.02));
+  const cv::Mat& moved = mover.Move(frame, Moved(0.0, 0.0, -0.02));
   EXPECT_EQ(cv::countNonZero(moved != 9900), 0);  // 1.98 m, 5000 a metre
 }
 
@@ -61,7 +58,7 @@ TEST(DepthWarperTest, GoingAheadBringsAllNearer) {
 TEST(DepthWarperTest, TheNearSurfaceHidesTheFarOneAndUncoversTheUnknown) {
   const Frame frame = BoardAndWall(50, 70);
   DepthWarper mover(MovedCamera());
-  const cv::Mat& moved = mover.Move(frame, Shift(-0.016, 0.0, 0.0));
+  const cv::Mat& moved = mover.Move(frame, Moved(-0.016, 0.0, 0.0));
   for (int v = 0; v < moved.rows; ++v) {
     for (int u = 2; u < moved.cols - 3; ++u) {
       const int raw = moved.at<uint16_t>(v, u);
@@ -89,10 +86,9 @@ TEST(DepthWarperTest, AgreesWithWhatIsSeenFromThere) {
   for (const Camera& camera : {MovedCamera(), distorted}) {
     const Renderer renderer(MakeScene("room", 1), camera);
     const Rigid3d there = FindSyntheticPath("handheld")(1.0, 5.0);
-    const Rigid3d there_from_here(
-        Eigen::Quaterniond(
-            Eigen::AngleAxisd(0.02, Vector3d(0.3, 0.8, 0.5).normalized())),
-        {0.012, -0.008, 0.01});
+    const Rigid3d there_from_here =
+        Moved(0.012, -0.008, 0.01) *
+        Turned(0.02, Vector3d(0.3, 0.8, 0.5).normalized());
     const Rigid3d here = there * there_from_here;
     const Frame measured = FrameOf(renderer.Render(here).depth);
     const cv::Mat expected = FrameOf(renderer.Render(there).depth).depth;

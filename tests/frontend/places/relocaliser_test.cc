@@ -2,18 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <deque>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <vector>
 
 #include "core/util/units.h"
-#include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/simulation/synthetic_renderer.h"
-#include "frontend/simulation/synthetic_scene.h"
-#include "frontend/simulation/synthetic_sensor.h"
+#include "tests/support/motions.h"
+#include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
 namespace {
@@ -25,45 +20,24 @@ constexpr double kMaxRotationError = 1.0 * kRadiansPerDegree;
 // Frames of the simulated room from any camera pose.
 class FurnishedRoom {
  public:
-  // NOLINTNEXTLINE(*UninitializedObject): the scene's seed has a default.
-  explicit FurnishedRoom(uint32_t seed)
-      : seed_(seed), renderer_(MakeScene("room", seed), camera_.camera) {}
+  explicit FurnishedRoom(uint32_t seed) { options_.seed = seed; }
 
-  const Camera& camera() const { return camera_.camera; }
+  const Camera& camera() const { return options_.camera.camera; }
 
-  // The view from `start_from_cam`, relative to the start of the paths.
+  // The view from `start_from_cam`, relative to the start of the paths. Each
+  // has noise of its own.
   Frame See(const Rigid3d& start_from_cam) {
-    const Rigid3d world_from_start = FindSyntheticPath("still")(0.0, 1.0);
-    Rendering rendering = renderer_.Render(world_from_start * start_from_cam);
-    const uint64_t key = (static_cast<uint64_t>(seed_) << 48) +
-                         (static_cast<uint64_t>(++count_) << 41);
-    AddColorNoise(key, &rendering.color);
-    Frame frame;
-    frame.index = count_;
-    frame.timestamp = count_ / 30.0;
-    frame.depth_scale = camera_.depth_scale;
-    cv::cvtColor(rendering.color, frame.gray, cv::COLOR_BGR2GRAY);
-    frame.depth = EncodeDepth(
-        MeasureDepth(rendering.depth, camera_.camera.fx, key + (1ull << 40)),
-        camera_.depth_scale);
-    return frame;
+    options_.path_from_cam = start_from_cam;
+    return SyntheticDataset(options_).Read(count_++);
   }
 
  private:
-  RgbdCamera camera_;
-  uint32_t seed_;
-  Renderer renderer_;
+  SyntheticOptions options_ = RoomOptions("still", 1000);
   int count_ = 0;
 };
 
-Rigid3d Turned(double degrees) {
-  return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
-                     degrees * kRadiansPerDegree, Eigen::Vector3d::UnitY())),
-                 Eigen::Vector3d::Zero());
-}
-
-Rigid3d Moved(double x, double y, double z) {
-  return Rigid3d(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, z));
+Rigid3d TurnedBy(double degrees) {
+  return Turned(degrees * kRadiansPerDegree, Eigen::Vector3d::UnitY());
 }
 
 // A relocaliser with the keyframes to search.
@@ -100,8 +74,8 @@ TEST(RelocaliserTest, FindsThePlaceFromAnotherPose) {
   Search relocaliser(room.camera());
   relocaliser.Add(room.See(Rigid3d()), 42);
   for (const Rigid3d& pose :
-       {Rigid3d(), Turned(25.0), Turned(-25.0), Moved(0.3, 0.0, 0.0),
-        Moved(0.0, 0.0, 0.3), Moved(-0.2, 0.1, -0.2) * Turned(10.0)}) {
+       {Rigid3d(), TurnedBy(25.0), TurnedBy(-25.0), Moved(0.3, 0.0, 0.0),
+        Moved(0.0, 0.0, 0.3), Moved(-0.2, 0.1, -0.2) * TurnedBy(10.0)}) {
     const std::optional<Relocalisation> found =
         relocaliser.Find(room.See(pose));
     ExpectFound(found, pose.Inverse());
@@ -113,7 +87,7 @@ TEST(RelocaliserTest, FindsThePlaceFromAnotherPose) {
 // there is one more keyframe in each search.
 TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
   FurnishedRoom room(1);
-  const Frame elsewhere = room.See(Turned(180.0));
+  const Frame elsewhere = room.See(TurnedBy(180.0));
   const Frame frame = room.See(Moved(0.1, 0.0, 0.0));
   for (const bool are_added : {false, true}) {
     Search relocaliser(room.camera());
@@ -139,19 +113,20 @@ TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
     return map[id];
   };
   for (int i = 0; i < 12; ++i) {
-    map.push_back(DescribeKeyframe(PreparedFrame(room.See(Turned(30.0 * i))),
+    map.push_back(DescribeKeyframe(PreparedFrame(room.See(TurnedBy(30.0 * i))),
                                    {room.camera()}));
     index.Add(i, map.back().described.descriptors);
   }
   for (const int i : {0, 1, 5, 11}) {
-    const Rigid3d pose = Turned(30.0 * i) * Moved(0.1, 0.0, 0.1) * Turned(5.0);
+    const Rigid3d pose =
+        TurnedBy(30.0 * i) * Moved(0.1, 0.0, 0.1) * TurnedBy(5.0);
     const std::optional<Relocalisation> found = relocaliser.FindInMap(
         PreparedFrame(room.See(pose)), index, features_of);
     ASSERT_TRUE(found.has_value()) << i;
-    ExpectFound(found, pose.Inverse() * Turned(30.0 * found->keyframe));
+    ExpectFound(found, pose.Inverse() * TurnedBy(30.0 * found->keyframe));
   }
   FurnishedRoom other(2);
-  EXPECT_FALSE(relocaliser.FindInMap(PreparedFrame(other.See(Turned(10.0))),
+  EXPECT_FALSE(relocaliser.FindInMap(PreparedFrame(other.See(TurnedBy(10.0))),
                                      index, features_of));
 }
 
@@ -160,10 +135,10 @@ TEST(RelocaliserTest, LooksOnlyAmongTheKeyframesThatAreKept) {
   Search relocaliser(room.camera());
   const Frame place = room.See(Rigid3d());
   relocaliser.Add(place, 7);
-  const Frame elsewhere = room.See(Turned(180.0));
+  const Frame elsewhere = room.See(TurnedBy(180.0));
   for (int i = 0; i < 5; ++i) relocaliser.Add(elsewhere, 100 + i);
   // The searches have come to the last keyframe when it is forgotten.
-  const Frame nowhere = FurnishedRoom(2).See(Turned(90.0));
+  const Frame nowhere = FurnishedRoom(2).See(TurnedBy(90.0));
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(relocaliser.Find(nowhere));
   relocaliser.ForgetTheOldest();
   relocaliser.ForgetTheOldest();
@@ -200,21 +175,21 @@ TEST(RelocaliserTest, DoesNotTakeAnotherSceneForThePlace) {
   for (const uint32_t seed : {2u, 3u, 4u, 5u}) {
     FurnishedRoom other(seed);
     for (const double degrees : {0.0, 10.0, 120.0}) {
-      const Frame frame = other.See(Turned(degrees));
+      const Frame frame = other.See(TurnedBy(degrees));
       for (int i = 0; i < 2; ++i) {
         EXPECT_FALSE(relocaliser.Find(frame)) << seed << " " << degrees;
       }
     }
   }
   for (const double degrees : {100.0, 140.0, 180.0, 220.0, 260.0}) {
-    EXPECT_FALSE(relocaliser.Find(room.See(Turned(degrees)))) << degrees;
+    EXPECT_FALSE(relocaliser.Find(room.See(TurnedBy(degrees)))) << degrees;
   }
 }
 
 TEST(RelocaliserTest, TheSameCallsGiveTheSameMotion) {
   FurnishedRoom room(1);
   const Frame keyframe = room.See(Rigid3d());
-  const Frame frame = room.See(Turned(15.0));
+  const Frame frame = room.See(TurnedBy(15.0));
   std::optional<Relocalisation> found[2];
   for (std::optional<Relocalisation>& result : found) {
     Search relocaliser(room.camera());
