@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <memory>
 #include <string>
 
 #include "core/geometry/camera.h"
@@ -22,6 +25,15 @@ inline TrackerParts PartsFor(const Camera& camera,
                     MakeDirectCosts(kDefaultDirectCost, kDefaultDirectLoss))),
       MakeCoarseEstimator()};
   return parts;
+}
+
+// A reference made of a frame.
+inline std::unique_ptr<Reference> ReferenceOf(Tracker* tracker,
+                                              const PreparedFrame& frame) {
+  std::string why_not;
+  auto reference = tracker->MakeReference(frame, nullptr, nullptr, &why_not);
+  EXPECT_NE(reference, nullptr) << why_not;
+  return reference;
 }
 
 }  // namespace rgbd_pose

@@ -2,16 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 
-#include "costs/direct_cost_factory.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/direct_tracker.h"
 #include "frontend/tracking/tracker_factory.h"
+#include "tests/support/motions.h"
 #include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
@@ -36,9 +34,7 @@ class CoarseStartTest : public ::testing::Test {
                   const MotionMatrix* guess_covariance = nullptr) {
     TrackingGuess about = guess;
     about.covariance = guess_covariance;
-    std::string why_not;
-    const auto reference =
-        tracker_.MakeReference(PreparedFrame(ref), nullptr, nullptr, &why_not);
+    const auto reference = ReferenceOf(&tracker_, PreparedFrame(ref));
     return tracker_.FindStart(*reference, PreparedFrame(cur), about);
   }
 
@@ -62,9 +58,15 @@ class CoarseStartTest : public ::testing::Test {
   }
 
   Rigid3d OffBy(double px, const Eigen::Vector3d& axis) const {
-    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(px / camera_.fx, axis)),
-                   Eigen::Vector3d::Zero()) *
-           cur_from_ref_;
+    return Turned(px / camera_.fx, axis) * cur_from_ref_;
+  }
+
+  // An image whose pixels do not agree.
+  Frame AnotherPlace() const {
+    Frame other = cur_;
+    cv::rotate(cur_.gray, other.gray, cv::ROTATE_180);
+    cv::rotate(cur_.depth, other.depth, cv::ROTATE_180);
+    return other;
   }
 
   SyntheticDataset dataset_;
@@ -108,10 +110,7 @@ TEST_F(CoarseStartTest, IsTheGuessWhereThereIsNothingToSee) {
 // For an image of another place, even the best fit is no start.
 TEST_F(CoarseStartTest, IsTheGuessWhereTooFewAgree) {
   const Rigid3d guess = OffBy(7.0, Eigen::Vector3d::UnitY());
-  Frame other = cur_;
-  cv::rotate(cur_.gray, other.gray, cv::ROTATE_180);
-  cv::rotate(cur_.depth, other.depth, cv::ROTATE_180);
-  const Rigid3d start = StartOf(ref_, other, guess);
+  const Rigid3d start = StartOf(ref_, AnotherPlace(), guess);
   EXPECT_EQ(start.translation, guess.translation);
   EXPECT_EQ(start.rotation.coeffs(), guess.rotation.coeffs());
 }
@@ -146,11 +145,7 @@ TEST_F(CoarseStartTest, SaysNothingOfTwoFramesThatShowNothing) {
   EXPECT_FALSE(align(black(ref_), black(cur_)).has_value());
   EXPECT_FALSE(align(ref_, black(cur_)).has_value());
   EXPECT_FALSE(align(black(ref_), cur_).has_value());
-  // Another place: its pixels do not agree.
-  Frame other = cur_;
-  cv::rotate(cur_.gray, other.gray, cv::ROTATE_180);
-  cv::rotate(cur_.depth, other.depth, cv::ROTATE_180);
-  EXPECT_FALSE(align(ref_, other).has_value());
+  EXPECT_FALSE(align(ref_, AnotherPlace()).has_value());
 }
 
 TEST_F(CoarseStartTest, EveryTrackerWithPixelsAlignsTwoFrames) {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/motions.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -24,15 +26,36 @@ class FeatureValidationTest : public testing::Test {
         last_.observations.push_back(At(u, v));
         const bool left = u < 320;
         const bool is_found = left || i % 2 == 0;
-        if (is_found) {
-          found_.Add(last_, i, At(left ? u : u + 15, v));
-          estimate_.is_inlier.push_back(left);
-          estimate_.residual_degrees.push_back(3);
-        }
+        if (is_found) AddFound(i, At(left ? u : u + 15, v), left);
       }
     }
     fresh_.observations = {At(100, 100), At(200, 300), At(500, 100),
                            At(550, 300)};
+  }
+
+  // Adds a match of a feature of the last reference.
+  void AddFound(int feature, const Observation& found, bool is_inlier) {
+    found_.Add(last_, feature, found);
+    estimate_.is_inlier.push_back(is_inlier);
+    estimate_.residual_degrees.push_back(3);
+  }
+  void ForgetFound() {
+    found_.Clear();
+    estimate_.is_inlier.clear();
+    estimate_.residual_degrees.clear();
+  }
+  // Finds those in the left half where they were.
+  void FindLeftHalf() {
+    for (size_t i = 0; i < last_.observations.size(); ++i) {
+      const Observation& o = last_.observations[i];
+      if (o.u < 320) AddFound(static_cast<int>(i), o, true);
+    }
+  }
+  // No cost could use the matches that do not agree.
+  void LeaveOutliersUnused() {
+    for (size_t i = 0; i < estimate_.is_inlier.size(); ++i) {
+      if (!estimate_.is_inlier[i]) estimate_.residual_degrees[i] = 0;
+    }
   }
 
   FeatureValidation Validation(bool missing_failed,
@@ -70,26 +93,16 @@ TEST_F(FeatureValidationTest, FeaturesWhereOthersFailedAreOnProbation) {
 
 // For example without depth in the current frame.
 TEST_F(FeatureValidationTest, MatchesThatNoCostCouldUseTellNothing) {
-  for (size_t i = 0; i < estimate_.is_inlier.size(); ++i) {
-    if (!estimate_.is_inlier[i]) estimate_.residual_degrees[i] = 0;
-  }
+  LeaveOutliersUnused();
   EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
 }
 
 TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
-  found_.Clear();
-  estimate_.is_inlier.clear();
-  estimate_.residual_degrees.clear();
+  ForgetFound();
   EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 0u + 4u)
       << "all would be on probation, so none are";
   EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
-  for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
-    if (last_.observations[i].u < 320) {
-      found_.Add(last_, i, last_.observations[i]);
-      estimate_.is_inlier.push_back(true);
-      estimate_.residual_degrees.push_back(3);
-    }
-  }
+  FindLeftHalf();
   EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 2u);
   EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
 }
@@ -97,20 +110,14 @@ TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
 // Features on probation at the last reference that now agree validate the
 // features around them. Other features on probation do not.
 TEST_F(FeatureValidationTest, FeaturesOnProbationThatAgreeSpeakForTheirPlace) {
-  FeatureMatches left{Correspondences(kKinect), {}};
-  estimate_.is_inlier.clear();
-  estimate_.residual_degrees.clear();
-  for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
-    const Observation o = last_.observations[i];
-    if (o.u < 320) {
-      left.Add(last_, i, o);
-      estimate_.is_inlier.push_back(true);
-      estimate_.residual_degrees.push_back(3);
-    } else {
-      on_probation_.Add(last_, i, At(o.v < 240 ? o.u : o.u + 15, o.v));
-    }
+  ForgetFound();
+  FindLeftHalf();
+  for (size_t i = 0; i < last_.observations.size(); ++i) {
+    const Observation& o = last_.observations[i];
+    if (o.u < 320) continue;
+    on_probation_.Add(last_, static_cast<int>(i),
+                      At(o.v < 240 ? o.u : o.u + 15, o.v));
   }
-  found_ = left;
   EXPECT_EQ(OnProbation(Validation(/*missing_failed=*/true)),
             (std::vector<int>{3}));
 }
@@ -162,9 +169,7 @@ TEST_F(FeatureValidationTest, FailuresOutsideTheImageSayNothing) {
   for (int k = 0; k < 3; ++k) {
     const int i = static_cast<int>(last_.observations.size());
     last_.observations.push_back(At(700 + 20 * k, 100));
-    found_.Add(last_, i, At(720 + 20 * k, 100));
-    estimate_.is_inlier.push_back(false);
-    estimate_.residual_degrees.push_back(3);
+    AddFound(i, At(720 + 20 * k, 100), false);
   }
   fresh_.observations.push_back(At(-80, 300));
   EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 3u);
@@ -173,10 +178,9 @@ TEST_F(FeatureValidationTest, FailuresOutsideTheImageSayNothing) {
 TEST_F(FeatureValidationTest, AgreementIsWithTheMotion) {
   FeatureValidation validation = Validation(true);
   // 2 cm to the left at 2 m: 5.25 px.
-  const Rigid3d cur_from_ref(Eigen::Quaterniond::Identity(), {-0.02, 0.0, 0.0});
   FeatureMatches moved{Correspondences(kKinect), {}};
   moved.Add(fresh_, 3, At(550 - 5.25, 300));
-  for (int i = 0; i < 3; ++i) validation.Learn(moved, cur_from_ref);
+  for (int i = 0; i < 3; ++i) validation.Learn(moved, Moved(-0.02, 0.0, 0.0));
   EXPECT_EQ(OnProbation(validation), (std::vector<int>{2}));
 }
 
@@ -195,17 +199,8 @@ TEST_F(MovingRegionsTest, WhereFeaturesContradictTheMotionSomethingMoves) {
 }
 
 TEST_F(MovingRegionsTest, MissingFeaturesAloneAreHiddenBySomething) {
-  // Nothing is found in the right half.
-  found_.Clear();
-  estimate_.is_inlier.clear();
-  estimate_.residual_degrees.clear();
-  for (size_t i = 0; i < last_.observations.size(); ++i) {
-    const Observation& o = last_.observations[i];
-    if (o.u >= 320) continue;
-    found_.Add(last_, i, o);
-    estimate_.is_inlier.push_back(true);
-    estimate_.residual_degrees.push_back(3);
-  }
+  ForgetFound();
+  FindLeftHalf();  // nothing in the right half
   EXPECT_NEAR(MarkMoving(last_, true, &tracked_), 0.55, 0.07);
   EXPECT_FALSE(moving_.Contains(100, 200));
   EXPECT_TRUE(moving_.Contains(500, 200));
@@ -214,9 +209,7 @@ TEST_F(MovingRegionsTest, MissingFeaturesAloneAreHiddenBySomething) {
 }
 
 TEST_F(MovingRegionsTest, MatchesThatNoCostCouldUseTellNothing) {
-  for (size_t i = 0; i < estimate_.is_inlier.size(); ++i) {
-    if (!estimate_.is_inlier[i]) estimate_.residual_degrees[i] = 0;
-  }
+  LeaveOutliersUnused();
   EXPECT_EQ(MarkMoving(last_, false, &tracked_), 1.0);
   EXPECT_FALSE(moving_.Contains(500, 200));
 }

@@ -22,10 +22,7 @@ TEST(HybridTrackerTest, PixelsAloneWaitWhileAGuessIsTentative) {
   const SyntheticDataset room(options);
   const PreparedFrame before(room.Read(10)), wall(room.Read(11));
   const auto tracker = MakeTracker("hybrid", PartsFor(room.camera().camera));
-  std::string why_not;
-  const auto reference =
-      tracker->MakeReference(before, nullptr, nullptr, &why_not);
-  ASSERT_NE(reference, nullptr) << why_not;
+  const auto reference = ReferenceOf(tracker.get(), before);
   TrackingResult tracked(room.camera().camera);
   TrackingGuess guess = Rigid3d();
   tracker->Track(*reference, wall, guess, &tracked);
@@ -41,10 +38,7 @@ TEST(HybridTrackerTest, ARefinementThatIsLeftCanBeMadeLater) {
   const SyntheticDataset room((SyntheticOptions()));
   const PreparedFrame before(room.Read(0)), next(room.Read(1));
   const auto tracker = MakeTracker("hybrid", PartsFor(room.camera().camera));
-  std::string why_not;
-  const auto reference =
-      tracker->MakeReference(before, nullptr, nullptr, &why_not);
-  ASSERT_NE(reference, nullptr) << why_not;
+  const auto reference = ReferenceOf(tracker.get(), before);
   TrackingResult at_once(room.camera().camera), later = at_once;
   TrackingGuess guess = Rigid3d();
   tracker->Track(*reference, next, guess, &at_once);
@@ -71,9 +65,7 @@ Rigid3d RefinedMotion(const std::string& cost, const Camera& camera,
       DirectEstimatorOptions(),
       JoinCosts(MakeRobustCosts(), MakeDirectCosts(cost, kDefaultDirectLoss)));
   const auto tracker = MakeTracker("hybrid", std::move(parts));
-  std::string why_not;
-  const auto reference =
-      tracker->MakeReference(PreparedFrame(before), nullptr, nullptr, &why_not);
+  const auto reference = ReferenceOf(tracker.get(), PreparedFrame(before));
   TrackingResult tracked(camera);
   tracker->Track(*reference, PreparedFrame(after), guess, &tracked);
   EXPECT_EQ(tracked.source, TrackingSource::kBoth);

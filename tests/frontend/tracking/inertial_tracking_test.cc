@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,7 +60,7 @@ struct TrackedHand {
   std::vector<std::optional<Twist>> twists;
 };
 
-TrackedHand TrackHand(Sensor sensor, bool is_covered) {
+TrackedHand TrackHandAgain(Sensor sensor, bool is_covered) {
   const HandWithImu& hand = HandWithImu::Get();
   Odometry odometry = OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
   if (sensor != Sensor::kNone) odometry.UseImu(hand.sensor);
@@ -79,6 +81,18 @@ TrackedHand TrackHand(Sensor sensor, bool is_covered) {
   return run;
 }
 
+// Several tests look at the same run.
+const TrackedHand& TrackHand(Sensor sensor, bool is_covered) {
+  static std::map<std::pair<Sensor, bool>, TrackedHand> runs;
+  auto run = runs.find({sensor, is_covered});
+  if (run == runs.end()) {
+    run = runs.emplace(std::pair(sensor, is_covered),
+                       TrackHandAgain(sensor, is_covered))
+              .first;
+  }
+  return run->second;
+}
+
 // Of the motion from one frame to another, m.
 double ShiftError(const TrackedHand& run, int from, int to) {
   const Rigid3d motion =
@@ -88,7 +102,7 @@ double ShiftError(const TrackedHand& run, int from, int to) {
 }
 
 TEST(InertialTrackingTest, GoesOnWhereImagesShowNothing) {
-  const TrackedHand run = TrackHand(Sensor::kGood, true);
+  const TrackedHand& run = TrackHand(Sensor::kGood, true);
   for (int i = kBlindFrom; i < kBlindTo; ++i) {
     const TrackedFrame& frame = run.frames[i];
     EXPECT_EQ(frame.status, TrackingStatus::kDegraded) << i;
@@ -144,7 +158,7 @@ TEST(InertialTrackingTest, GoesOnFromTheNewViewAfterAQuickTurn) {
 }
 
 TEST(InertialTrackingTest, WithoutASensorTheCameraIsLostThere) {
-  const TrackedHand run = TrackHand(Sensor::kNone, true);
+  const TrackedHand& run = TrackHand(Sensor::kNone, true);
   EXPECT_EQ(run.frames[kBlindFrom + 1].status, TrackingStatus::kLost);
 }
 
@@ -179,7 +193,7 @@ TEST(InertialTrackingTest, KnowsTheVelocityOfEachFrame) {
 // rolling shutter leaves of the errors of motions.
 TEST(InertialTrackingTest, MovesRowsByAccelerations) {
   const auto median_error = [&](Sensor sensor) {
-    const TrackedHand run = TrackHand(sensor, false);
+    const TrackedHand& run = TrackHand(sensor, false);
     constexpr int kApart = 6;
     std::vector<double> errors;
     for (int i = kFirst; i + kApart < kFrames; ++i) {
@@ -216,8 +230,8 @@ TEST(InertialTrackingTest, FindsWhenColourWasExposed) {
 
 // The path of a sensor with swapped axes is that without it, to the last bit.
 TEST(InertialTrackingTest, ASensorThatContradictsTheImagesIsLeftOut) {
-  const TrackedHand with = TrackHand(Sensor::kSwapped, false);
-  const TrackedHand without = TrackHand(Sensor::kNone, false);
+  const TrackedHand& with = TrackHand(Sensor::kSwapped, false);
+  const TrackedHand& without = TrackHand(Sensor::kNone, false);
   for (int i = 0; i < kFrames; ++i) {
     EXPECT_EQ(with.frames[i].world_from_cam.translation,
               without.frames[i].world_from_cam.translation)

@@ -3,38 +3,26 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <utility>
 #include <vector>
+
+#include "tests/support/feature_wall.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
 
-// 15 x 11 features on a wall at 2 m.
 std::unique_ptr<Reference> MakeWall() {
-  auto features = std::make_unique<FeatureSet>();
-  for (int v = 40; v < 480; v += 40) {
-    for (int u = 40; u < 640; u += 40) {
-      features->observations.push_back({1.0 * u, 1.0 * v, 2.0, 0.5, 0.01});
-    }
-  }
-  const FeatureValidation validation(features->observations.size());
   auto reference = std::make_unique<Reference>();
-  reference->features = std::make_unique<ReferenceFeatures>(
-      Camera{640, 480, 525, 525, 319.5, 239.5}, std::move(features),
-      validation);
+  reference->features = std::make_unique<ReferenceFeatures>(FeatureWall());
   return reference;
 }
 
 constexpr double kMinShare = 0.7;
 constexpr double kMaxFlowPx = 30.0;
 
-// A camera that looks along z from a position on the x axis (m).
-Rigid3d CameraAt(double x) {
-  return Rigid3d(Eigen::Quaterniond::Identity(), {x, 0.0, 0.0});
-}
-
+// Its camera looks along z from a position on the x axis (m).
 OdometryKeyframe MakeKeyframe(int id, int segment, double x) {
-  return {{id, segment, CameraAt(x)}, MakeWall()};
+  return {{id, segment, Moved(x, 0.0, 0.0)}, MakeWall()};
 }
 
 TEST(KeyframesTest, FindsByIdAndForgetsTheOldest) {
@@ -72,8 +60,7 @@ TEST(KeyframesTest, TheNearestIsTheOneWithTheSmallestFlow) {
   keyframes.Add(MakeKeyframe(2, 0, 0.12));
   const auto nearest = [&](int segment, const OdometryKeyframe* except,
                            double flow) {
-    return keyframes.FindNearest(CameraAt(0.0), segment, kMinShare, flow,
-                                 except);
+    return keyframes.FindNearest(Rigid3d(), segment, kMinShare, flow, except);
   };
   EXPECT_EQ(nearest(0, nullptr, kMaxFlowPx), near);
   EXPECT_EQ(nearest(0, near, kMaxFlowPx), far);
@@ -86,9 +73,9 @@ TEST(KeyframesTest, EnoughOfTheViewHasToBeShared) {
   // At 262.5 px per metre, 9 of the 15 columns are left.
   keyframes.Add(MakeKeyframe(0, 0, 1.0));
   constexpr double kAnyFlow = 1e9;
-  EXPECT_NE(keyframes.FindNearest(CameraAt(0.0), 0, 0.55, kAnyFlow, nullptr),
+  EXPECT_NE(keyframes.FindNearest(Rigid3d(), 0, 0.55, kAnyFlow, nullptr),
             nullptr);
-  EXPECT_EQ(keyframes.FindNearest(CameraAt(0.0), 0, 0.65, kAnyFlow, nullptr),
+  EXPECT_EQ(keyframes.FindNearest(Rigid3d(), 0, 0.65, kAnyFlow, nullptr),
             nullptr);
 }
 

@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
 #include <vector>
 
-#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/odometry.h"
+#include "tests/support/rendered_once.h"
 #include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
@@ -35,7 +34,7 @@ TEST_P(LensTrackingTest, IsTrackedToMillimetres) {
       options.color_shutter = {0.0, 0.025};
       options.depth_shutter = {-0.01, 0.025};
     }
-    const SyntheticDataset room(options);
+    const RenderedOnce room(options);  // for all trackers
     for (const char* const tracker : {"features", "direct", "hybrid"}) {
       Odometry odometry({},
                         MakeTracker(tracker, PartsFor(room.camera().camera)));

@@ -28,11 +28,7 @@ class MovedReferenceTest : public ::testing::TestWithParam<std::string> {
 
   // A reference made with this velocity.
   std::unique_ptr<Reference> Make(const std::optional<Twist>& twist) {
-    std::string why_not;
-    auto reference = tracker_->MakeReference(ref_.WithTwist(twist), nullptr,
-                                             nullptr, &why_not);
-    EXPECT_NE(reference, nullptr) << why_not;
-    return reference;
+    return ReferenceOf(tracker_.get(), ref_.WithTwist(twist));
   }
 
   TrackingResult Track(const Reference& reference) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/odometry.h"
+#include "tests/support/rendered_once.h"
 #include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
@@ -21,13 +21,15 @@ struct PatchRun {
 };
 
 // A poster moves through a share of the view by 5 to 8 px per frame.
-PatchRun TrackWithPatch(const std::string& tracker, double share, int frames,
-                        double max_error) {
+SyntheticOptions WithPatch(double share) {
   SyntheticOptions options;
-  options.path = "xyz";
   options.frames = 240;
   options.moving_patch = share;
-  const SyntheticDataset room(options);
+  return options;
+}
+
+PatchRun TrackWithPatch(const std::string& tracker, const RenderedOnce& room,
+                        int frames, double max_error) {
   Odometry odometry({}, MakeTracker(tracker, PartsFor(room.camera().camera)));
   std::vector<double> errors;
   PatchRun outcome;
@@ -49,8 +51,9 @@ PatchRun TrackWithPatch(const std::string& tracker, double share, int frames,
 TEST(MovingThingsTest, PixelsDoNotOverruleFeatures) {
   constexpr int kFrames = 25;
   for (const double share : {0.1, 0.2}) {
-    const PatchRun features = TrackWithPatch("features", share, kFrames, 1e-3);
-    const PatchRun both = TrackWithPatch("hybrid", share, kFrames, 1e-3);
+    const RenderedOnce room(WithPatch(share));
+    const PatchRun features = TrackWithPatch("features", room, kFrames, 1e-3);
+    const PatchRun both = TrackWithPatch("hybrid", room, kFrames, 1e-3);
     EXPECT_EQ(features.ok, kFrames - 1);
     EXPECT_EQ(both.ok, kFrames - 1);
     EXPECT_EQ(both.wrong, 0) << share;
@@ -61,10 +64,11 @@ TEST(MovingThingsTest, PixelsDoNotOverruleFeatures) {
 // Before the poster has moved apart from the room, one motion fits both
 // halfway.
 TEST(MovingThingsTest, ACompromiseIsNotOk) {
-  const PatchRun run = TrackWithPatch("hybrid", 0.4, 4, 1e-2);
+  const RenderedOnce room(WithPatch(0.4));
+  const PatchRun run = TrackWithPatch("hybrid", room, 4, 1e-2);
   EXPECT_EQ(run.wrong, 0);
   // Later, when only the room is followed, frames are ok again.
-  EXPECT_GE(TrackWithPatch("hybrid", 0.4, 12, 1e-2).ok, 6);
+  EXPECT_GE(TrackWithPatch("hybrid", room, 12, 1e-2).ok, 6);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frontend/tracking/odometry.h"
+#include "tests/support/motions.h"
 #include "tests/support/rendered_once.h"
 #include "tests/support/track_sequence.h"
 
@@ -19,13 +20,9 @@ namespace {
 class LostPolicyTest : public ::testing::Test {
  protected:
   LostPolicyTest() {
-    SyntheticOptions options;
-    options.path = "xyz";
-    options.frames = 8;
+    SyntheticOptions options = RoomOptions("xyz", 8);
     here_.emplace(options);
-    options.path_from_cam = Rigid3d(
-        Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
-        Eigen::Vector3d::Zero());
+    options.path_from_cam = Turned(M_PI, Eigen::Vector3d::UnitY());
     elsewhere_.emplace(options);
   }
 
@@ -123,14 +120,9 @@ TEST_F(LostPolicyTest, ANewSegmentStartsWhereTheOldOneEnded) {
 }
 
 // The view of a camera rotated on the spot.
-Frame Turned(double deg) {
-  SyntheticOptions options;
-  options.path = "still";
-  options.frames = 1;
-  options.path_from_cam =
-      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(deg * M_PI / 180.0,
-                                                   Eigen::Vector3d::UnitY())),
-              Eigen::Vector3d::Zero());
+Frame ViewTurned(double deg) {
+  SyntheticOptions options = RoomOptions("still", 1);
+  options.path_from_cam = Turned(deg * M_PI / 180.0, Eigen::Vector3d::UnitY());
   return SyntheticDataset(options).Read(0);
 }
 
@@ -140,7 +132,7 @@ TEST(OdometryTest, AFrameIsLostIfNoMotionTiesItToTheOneBefore) {
       TrackingStatus::kOk, TrackingStatus::kDegraded, TrackingStatus::kLost,
       TrackingStatus::kLost};
   for (int i = 0; i < 4; ++i) {
-    Frame frame = Turned(90.0 * i);
+    Frame frame = ViewTurned(90.0 * i);
     frame.index = i;
     frame.timestamp += 0.1 * i;
     EXPECT_EQ(odometry.Track(frame).status, expected[i]) << i;
@@ -151,12 +143,12 @@ TEST(OdometryTest, AFrameIsLostIfNoMotionTiesItToTheOneBefore) {
 TEST(OdometryTest, TheWayBackToASegmentIsTrackedAndJoinsBoth) {
   const Camera camera = Room("still", 1).camera().camera;
   Odometry odometry = MakeOdometry(camera, "tukey");
-  ASSERT_EQ(odometry.Track(Turned(0.0)).status, TrackingStatus::kOk);
+  ASSERT_EQ(odometry.Track(ViewTurned(0.0)).status, TrackingStatus::kOk);
   const int first_turn = 60, step = 4;
   TrackedFrame result;
   int index = 1;
   for (int deg = first_turn; deg >= 20; deg -= step, ++index) {
-    Frame frame = Turned(deg);
+    Frame frame = ViewTurned(deg);
     frame.index = index;
     frame.timestamp += 0.05 * index;
     result = odometry.Track(frame);
@@ -278,13 +270,9 @@ INSTANTIATE_TEST_SUITE_P(Policies, DarknessTest,
 // A room ten times as large, beyond the default depth range, left and entered
 // again with the camera rotated.
 TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
-  SyntheticOptions options;
-  options.path = "still";
-  options.frames = 2;
+  SyntheticOptions options = RoomOptions("still", 2);
   const SyntheticDataset here(options);
-  options.path_from_cam = Rigid3d(
-      Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY())),
-      Eigen::Vector3d::Zero());
+  options.path_from_cam = Turned(0.4, Eigen::Vector3d::UnitY());
   const SyntheticDataset turned(options);
   FrontendOptions frontend{here.camera().camera};
   frontend.depth.max_depth = 100.0;

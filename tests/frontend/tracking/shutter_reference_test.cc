@@ -5,10 +5,10 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "frontend/tracking/shutter_tracking.h"
+#include "tests/support/fake_tracker.h"
 
 namespace rgbd_pose {
 namespace {
@@ -26,36 +26,18 @@ struct Move {
 };
 
 // Keeps how its reference was moved.
-class MovingTracker final : public Tracker {
+class MovingTracker final : public FakeTracker {
  public:
   MovingTracker() {
     images_.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
-  }
-  void Prepare(const PreparedFrame& /*frame*/) const override {}
-  std::unique_ptr<Reference> MakeReference(const PreparedFrame& /*frame*/,
-                                           const Reference* /*last*/,
-                                           const TrackingResult* /*tracked*/,
-                                           std::string* /*why_not*/) override {
-    return std::make_unique<Reference>();
   }
   void MoveReference(const PreparedFrame& frame,
                      const Rigid3d& reference_from_stamp,
                      Reference* /*reference*/) const override {
     moves.push_back({*frame.twist, reference_from_stamp});
   }
-  void Track(const Reference& /*reference*/, const PreparedFrame& /*frame*/,
-             const TrackingGuess& /*guess*/,
-             TrackingResult* /*tracked*/) override {}
-  void TrackAgain(const Reference& /*reference*/,
-                  const PreparedFrame& /*frame*/,
-                  const TrackingGuess& /*guess*/,
-                  TrackingResult* /*tracked*/) override {}
-  const FrontendOptions& images() const override { return images_; }
 
   mutable std::vector<Move> moves;
-
- private:
-  FrontendOptions images_;
 };
 
 PreparedFrame FrameAt(double timestamp, const std::optional<Twist>& twist) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "core/util/input_error.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/direct_tracker.h"
@@ -14,36 +13,22 @@
 #include "frontend/tracking/odometry.h"
 #include "frontend/tracking/tracker_factory.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/feature_wall.h"
+#include "tests/support/motions.h"
+#include "tests/support/rendered_once.h"
 #include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
 namespace {
 
-const Camera kCamera = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
-
-// 15 x 11 features on a wall at 2 m.
-ReferenceFeatures FeatureWall() {
-  auto features = std::make_unique<FeatureSet>();
-  for (int v = 40; v < 480; v += 40) {
-    for (int u = 40; u < 640; u += 40) {
-      features->observations.push_back({1.0 * u, 1.0 * v, 2.0, 0.5, 0.01});
-    }
-  }
-  const FeatureValidation validation(features->observations.size());
-  return ReferenceFeatures(kCamera, std::move(features), validation);
-}
-
 TEST(ReferenceFeaturesTest, SaysWhatAnotherCameraSeesOfIt) {
   const ReferenceFeatures wall = FeatureWall();
   // 525 px / 2 m: a metre is 262.5 px, and 9 of the 15 columns are left.
-  const Overlap aside =
-      wall.SeenFrom(Rigid3d(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}));
+  const Overlap aside = wall.SeenFrom(Moved(-1.0, 0.0, 0.0));
   EXPECT_NEAR(aside.share, 9.0 / 15.0, 1e-12);
   EXPECT_NEAR(aside.flow_px, 262.5, 1e-9);
   // Nothing is in view behind the camera.
-  const Rigid3d turned(
-      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
-      Eigen::Vector3d::Zero());
+  const Rigid3d turned = Turned(M_PI, Eigen::Vector3d::UnitY());
   EXPECT_EQ(wall.SeenFrom(turned).share, 0.0);
 }
 
@@ -53,7 +38,7 @@ class WallFrontend final : public Frontend {
   using Move = std::function<void(size_t feature, Observation* found)>;
 
   explicit WallFrontend(Move move)
-      : Frontend({kCamera}), move_(std::move(move)) {}
+      : Frontend({kWallCamera}), move_(std::move(move)) {}
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
     return std::make_unique<FeatureSet>(*FeatureWall().features);
   }
@@ -76,12 +61,8 @@ TrackingResult TrackWall(const WallFrontend::Move& move) {
   FeatureTracker tracker(std::make_unique<WallFrontend>(move),
                          Estimator({}, MakeRobustCosts()));
   const PreparedFrame frame{Frame()};
-  std::string why_not;
-  const auto reference =
-      tracker.MakeReference(frame, nullptr, nullptr, &why_not);
-  EXPECT_NE(reference, nullptr) << why_not;
-  TrackingResult tracked(kCamera);
-  if (reference == nullptr) return tracked;
+  const auto reference = ReferenceOf(&tracker, frame);
+  TrackingResult tracked(kWallCamera);
   tracker.Track(*reference, frame, Rigid3d(), &tracked);
   return tracked;
 }
@@ -136,10 +117,8 @@ class TrackerTest : public ::testing::TestWithParam<std::string> {
 // The odometry relies on this for every tracker.
 TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   const auto tracker = Make();
-  std::string why_not;
-  const auto reference = tracker->MakeReference(PreparedFrame(room_.Read(0)),
-                                                nullptr, nullptr, &why_not);
-  ASSERT_NE(reference, nullptr) << why_not;
+  const auto reference =
+      ReferenceOf(tracker.get(), PreparedFrame(room_.Read(0)));
   TrackingResult tracked(tracker->images().camera);
   double share = 1.0, flow = 0.0;
   for (const int frame : {5, 15}) {
@@ -177,16 +156,14 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
           MakeRobustCosts("bidirectional_point+motion_prior", "tukey,none"),
           MakeDirectCosts(cost, "tukey,none")));
   const auto tracker = MakeTracker(GetParam(), std::move(parts));
-  std::string why_not;
-  const auto reference = tracker->MakeReference(PreparedFrame(room_.Read(0)),
-                                                nullptr, nullptr, &why_not);
+  const auto reference =
+      ReferenceOf(tracker.get(), PreparedFrame(room_.Read(0)));
   const PreparedFrame frame(room_.Read(3));
   const Rigid3d truth = room_.WorldFromCam(3).Inverse() * room_.WorldFromCam(0);
-  const Rigid3d off(Eigen::Quaterniond::Identity(), {0.01, 0.0, 0.0});
   TrackingResult tracked(tracker->images().camera);
   const auto pulled = [&](double sigma) {
     const MotionMatrix covariance = sigma * sigma * MotionMatrix::Identity();
-    TrackingGuess guess = off * truth;
+    TrackingGuess guess = Moved(0.01, 0.0, 0.0) * truth;
     guess.covariance = &covariance;
     tracker->Track(*reference, frame, guess, &tracked);
     return (tracked.estimate.cur_from_prev * truth.Inverse())
@@ -208,8 +185,7 @@ TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
       tracker->MakeReference(PreparedFrame(black), nullptr, nullptr, &why_not),
       nullptr);
   EXPECT_NE(why_not, "");
-  const auto reference =
-      tracker->MakeReference(PreparedFrame(good), nullptr, nullptr, &why_not);
+  const auto reference = ReferenceOf(tracker.get(), PreparedFrame(good));
   TrackingResult tracked(tracker->images().camera);
   tracker->Track(*reference, PreparedFrame(black), Rigid3d(), &tracked);
   EXPECT_EQ(tracked.status, TrackingStatus::kLost);
@@ -250,17 +226,12 @@ struct Tracks {
   std::string reason;  // of the last lost frame
 };
 
-Tracks Follow(const char* tracker, const char* scene, const char* path,
-              int frames, const OdometryOptions& policy = {}) {
-  SyntheticOptions options;
-  options.scene = scene;
-  options.path = path;
-  options.frames = frames;
-  const SyntheticDataset dataset(options);
+Tracks Follow(const char* tracker, const SyntheticDataset& dataset,
+              const OdometryOptions& policy = {}) {
   Odometry odometry(policy,
                     MakeTracker(tracker, PartsFor(dataset.camera().camera)));
   Tracks tracks;
-  for (int i = 0; i < frames; ++i) {
+  for (int i = 0; i < dataset.size(); ++i) {
     const TrackedFrame frame = odometry.Track(dataset.Read(i));
     if (frame.status == TrackingStatus::kLost) {
       ++tracks.lost;
@@ -279,12 +250,13 @@ Tracks Follow(const char* tracker, const char* scene, const char* path,
 TEST(DirectTrackerTest, IsNotLostWithoutTexture) {
   OdometryOptions hold;
   hold.on_lost = LostPolicy::kHold;
-  EXPECT_GT(Follow("features", "plain_room", "pan_tilt", 40, hold).lost, 5);
-  const Tracks direct = Follow("direct", "plain_room", "pan_tilt", 40);
+  const RenderedOnce room({"plain_room", "pan_tilt", 40});
+  EXPECT_GT(Follow("features", room, hold).lost, 5);
+  const Tracks direct = Follow("direct", room);
   EXPECT_EQ(direct.lost, 0);
   EXPECT_EQ(direct.by_pixels_alone, 39);
   EXPECT_LE(direct.off, 0.003);
-  const Tracks hybrid = Follow("hybrid", "plain_room", "pan_tilt", 40);
+  const Tracks hybrid = Follow("hybrid", room);
   EXPECT_EQ(hybrid.lost, 0);
   EXPECT_LE(hybrid.off, 0.003);
 }
@@ -294,7 +266,8 @@ TEST(DirectTrackerTest, IsNotLostWithoutTexture) {
 TEST(DirectTrackerTest, SaysWhichDirectionACorridorHides) {
   OdometryOptions hold;
   hold.on_lost = LostPolicy::kHold;
-  const Tracks tracks = Follow("direct", "corridor", "walk", 8, hold);
+  const Tracks tracks =
+      Follow("direct", SyntheticDataset({"corridor", "walk", 8}), hold);
   EXPECT_EQ(tracks.lost, 7);
   EXPECT_NE(tracks.reason.find("translation along z"), std::string::npos)
       << tracks.reason;
@@ -315,10 +288,8 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
     TrackerParts parts = PartsFor(room.camera().camera);
     if (is_strict) parts.options.min_likeness = 1.0;
     const auto tracker = MakeTracker("direct", std::move(parts));
-    std::string why_not;
-    const auto reference = tracker->MakeReference(PreparedFrame(room.Read(0)),
-                                                  nullptr, nullptr, &why_not);
-    ASSERT_NE(reference, nullptr) << why_not;
+    const auto reference =
+        ReferenceOf(tracker.get(), PreparedFrame(room.Read(0)));
     TrackingResult tracked(room.camera().camera);
     tracker->Track(*reference, PreparedFrame(next), Rigid3d(), &tracked);
     EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_strict)
@@ -329,8 +300,9 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
 }
 
 TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
-  const Tracks features = Follow("features", "room", "xyz", 12);
-  const Tracks hybrid = Follow("hybrid", "room", "xyz", 12);
+  const RenderedOnce room({"room", "xyz", 12});
+  const Tracks features = Follow("features", room);
+  const Tracks hybrid = Follow("hybrid", room);
   EXPECT_EQ(hybrid.by_pixels_alone, 0);
   EXPECT_LE(hybrid.off, 0.7 * features.off)
       << hybrid.off << " against " << features.off;

@@ -5,8 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <string>
-#include <vector>
+
+#include "tests/support/fake_tracker.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
@@ -24,26 +25,13 @@ constexpr Outcome kNone = {Status::kLost, Status::kLost};
 
 constexpr double kFirst = 1.0, kSecond = 2.0, kThird = 3.0;  // x of guesses, m
 
-Rigid3d At(double x) {
-  return Rigid3d(Eigen::Quaterniond::Identity(), {x, 0.0, 0.0});
-}
+Rigid3d At(double x) { return Moved(x, 0.0, 0.0); }
 
 // Returns the guess as the pose. Skips the slow methods of a tentative guess.
-class ScriptedTracker final : public Tracker {
+class ScriptedTracker final : public FakeTracker {
  public:
   ScriptedTracker(Outcome first, Outcome second, Outcome third)
       : first_(first), second_(second), third_(third) {}
-
-  void Prepare(const PreparedFrame& /*frame*/) const override {}
-  std::unique_ptr<Reference> MakeReference(const PreparedFrame& /*frame*/,
-                                           const Reference* /*last*/,
-                                           const TrackingResult* /*tracked*/,
-                                           std::string* /*why_not*/) override {
-    return std::make_unique<Reference>();
-  }
-  void MoveReference(const PreparedFrame& /*frame*/,
-                     const Rigid3d& /*reference_from_stamp*/,
-                     Reference* /*reference*/) const override {}
 
   void Track(const Reference& /*reference*/, const PreparedFrame& /*frame*/,
              const TrackingGuess& guess, TrackingResult* tracked) override {
@@ -75,14 +63,11 @@ class ScriptedTracker final : public Tracker {
     ++num_again;
   }
 
-  const FrontendOptions& images() const override { return images_; }
-
   int num_tracked = 0;
   int num_slow = 0;
   int num_again = 0;
 
  private:
-  FrontendOptions images_;
   Outcome first_, second_, third_;
 };
 
@@ -95,7 +80,7 @@ struct Attempt {
   bool has_searched = false;
 };
 
-Attempt TryInTurn(Outcome first, Outcome second, Outcome third = kNone) {
+Attempt TryInTurn(Outcome first, Outcome second, Outcome third) {
   ScriptedTracker tracker(first, second, third);
   TrackingAttempts attempts(&tracker);
   OdometryKeyframe keyframe;
@@ -118,10 +103,34 @@ Attempt TryInTurn(Outcome first, Outcome second, Outcome third = kNone) {
   return attempt;
 }
 
-TEST(TrackingAttemptsTest, AGoodFirstGuessIsEnough) {
-  const Attempt attempt = TryInTurn(kGood, kGood, kGood);
+void ExpectAttempt(const Attempt& attempt, const Attempt& expected) {
+  EXPECT_EQ(attempt.kept, expected.kept);
+  EXPECT_EQ(attempt.status, expected.status);
+  EXPECT_EQ(attempt.num_slow, expected.num_slow);
+  EXPECT_EQ(attempt.has_searched, expected.has_searched);
+}
+
+TEST(TrackingAttemptsTest, TheFirstOfTheBestPosesIsKept) {
+  ExpectAttempt(TryInTurn(kGood, kGood, kGood),
+                {kFirst, Status::kOk, 0, false});
+  // Slow methods run if no guess is good.
+  const Outcome late_good = {Status::kLost, Status::kOk};
+  const Outcome late = {Status::kLost, Status::kDegraded};
+  ExpectAttempt(TryInTurn(late_good, late, kNone),
+                {kFirst, Status::kOk, 1, true});
+  // Of two doubtful poses the first is kept; one is better than none.
+  const Outcome doubtful = {Status::kDegraded, Status::kDegraded};
+  ExpectAttempt(TryInTurn(late, doubtful, kNone),
+                {kFirst, Status::kDegraded, 1, true});
+  ExpectAttempt(TryInTurn(kNone, doubtful, kNone),
+                {kSecond, Status::kDegraded, 2, true});
+  EXPECT_EQ(TryInTurn(kNone, kNone, kNone).kept, 0.0);
+  // What descriptors find does not replace an ambiguous pose.
+  Outcome ambiguous = doubtful;
+  ambiguous.is_ambiguous = true;
+  const Attempt attempt = TryInTurn(ambiguous, doubtful, kGood);
   EXPECT_EQ(attempt.kept, kFirst);
-  EXPECT_EQ(attempt.num_slow, 0);
+  EXPECT_EQ(attempt.status, Status::kDegraded);
   EXPECT_FALSE(attempt.has_searched);
 }
 
@@ -131,44 +140,9 @@ TEST(TrackingAttemptsTest, OtherGuessesComeBeforeSlowMethods) {
       const Attempt attempt = TryInTurn(
           {quick, Status::kOk},
           good == kSecond ? kGood : Outcome{quick, Status::kOk}, kGood);
-      EXPECT_EQ(attempt.kept, good);
-      EXPECT_EQ(attempt.status, Status::kOk);
-      EXPECT_EQ(attempt.num_slow, 0);
-      EXPECT_EQ(attempt.has_searched, good == kThird);
+      ExpectAttempt(attempt, {good, Status::kOk, 0, good == kThird});
     }
   }
-}
-
-TEST(TrackingAttemptsTest, AnAmbiguousPoseIsNotReplacedByWhatDescriptorsFind) {
-  const Attempt attempt =
-      TryInTurn({Status::kDegraded, Status::kDegraded, /*is_ambiguous=*/true},
-                {Status::kDegraded, Status::kDegraded}, kGood);
-  EXPECT_EQ(attempt.kept, kFirst);
-  EXPECT_EQ(attempt.status, Status::kDegraded);
-  EXPECT_FALSE(attempt.has_searched);
-}
-
-TEST(TrackingAttemptsTest, SlowMethodsRunIfNoGuessIsGood) {
-  const Attempt attempt = TryInTurn({Status::kLost, Status::kOk},
-                                    {Status::kLost, Status::kDegraded});
-  EXPECT_EQ(attempt.kept, kFirst);
-  EXPECT_EQ(attempt.status, Status::kOk);
-  EXPECT_EQ(attempt.num_slow, 1);
-}
-
-TEST(TrackingAttemptsTest, OfTwoDoubtfulPosesTheFirstIsKept) {
-  const Attempt attempt = TryInTurn({Status::kLost, Status::kDegraded},
-                                    {Status::kDegraded, Status::kDegraded});
-  EXPECT_EQ(attempt.kept, kFirst);
-  EXPECT_EQ(attempt.status, Status::kDegraded);
-}
-
-TEST(TrackingAttemptsTest, ADoubtfulPoseIsBetterThanNone) {
-  const Attempt attempt =
-      TryInTurn(kNone, {Status::kDegraded, Status::kDegraded});
-  EXPECT_EQ(attempt.kept, kSecond);
-  EXPECT_EQ(attempt.status, Status::kDegraded);
-  EXPECT_EQ(TryInTurn(kNone, kNone).kept, 0.0);
 }
 
 TEST(TrackingAttemptsTest, ACorrectionReplacesThePoseAndAddsItsTime) {

@@ -42,6 +42,14 @@ MotionEstimate Weighted(const std::vector<double>& weights) {
   return estimate;
 }
 
+using Pixels = std::vector<std::array<double, 4>>;
+
+cv::Mat Draw(const Camera& camera, const Pixels& pixels,
+             const MotionEstimate& estimate, const std::string& caption = "") {
+  return DrawMatches(GrayFrame(camera), camera, Matches(camera, pixels),
+                     estimate, caption);
+}
+
 cv::Vec3b At(const cv::Mat& picture, int x, int y) {
   return picture.at<cv::Vec3b>(y, x);
 }
@@ -64,10 +72,8 @@ bool Differ(const cv::Mat& a, const cv::Mat& b, int first, int last) {
 
 TEST(TrackingPicturesTest, DrawsLinesAndDotsInTheColourOfTheWeight) {
   const Camera camera;
-  const FeatureMatches found =
-      Matches(camera, {{100, 50, 140, 50}, {300, 400, 300, 350}});
-  const cv::Mat picture =
-      DrawMatches(GrayFrame(camera), camera, found, Weighted({1, 0}), "");
+  const cv::Mat picture = Draw(
+      camera, {{100, 50, 140, 50}, {300, 400, 300, 350}}, Weighted({1, 0}));
   // Along the line.
   EXPECT_TRUE(IsYellow(At(picture, 102, 50)));
   EXPECT_TRUE(IsYellow(At(picture, 120, 50)));
@@ -93,14 +99,9 @@ TEST(TrackingPicturesTest, DimsTheImageAndLeavesItAlone) {
 
 TEST(TrackingPicturesTest, GoodMatchesLieOnTopOfOutliers) {
   const Camera camera;
-  const std::vector<std::array<double, 4>> crossing = {{100, 100, 140, 100},
-                                                       {120, 80, 120, 120}};
-  const Frame frame = GrayFrame(camera);
-  const FeatureMatches found = Matches(camera, crossing);
-  for (const std::vector<double>& weights :
-       {std::vector<double>{1, 0}, std::vector<double>{0, 1}}) {
-    EXPECT_TRUE(IsYellow(At(
-        DrawMatches(frame, camera, found, Weighted(weights), ""), 120, 100)));
+  const Pixels crossing = {{100, 100, 140, 100}, {120, 80, 120, 120}};
+  for (const MotionEstimate& estimate : {Weighted({1, 0}), Weighted({0, 1})}) {
+    EXPECT_TRUE(IsYellow(At(Draw(camera, crossing, estimate), 120, 100)));
   }
 }
 
@@ -111,9 +112,7 @@ TEST(TrackingPicturesTest, PutsIdealPixelsBackIntoTheDistortedImage) {
   ASSERT_GT((cur - Eigen::Vector2d(60, 40)).norm(), 6.0)
       << "the distortion is too small to be seen";
   const cv::Mat picture =
-      DrawMatches(GrayFrame(camera), camera,
-                  Matches(camera, {{prev.x(), prev.y(), cur.x(), cur.y()}}),
-                  Weighted({1}), "");
+      Draw(camera, {{prev.x(), prev.y(), cur.x(), cur.y()}}, Weighted({1}));
   EXPECT_TRUE(IsYellow(At(picture, 60, 40)));
   EXPECT_TRUE(IsYellow(At(picture, 60, 42)));
   EXPECT_TRUE(IsYellow(At(picture, 32, 40)));
@@ -122,12 +121,10 @@ TEST(TrackingPicturesTest, PutsIdealPixelsBackIntoTheDistortedImage) {
 
 TEST(TrackingPicturesTest, WithoutWeightsMatchesAreLightGrey) {
   const Camera camera;
-  const FeatureMatches found =
-      Matches(camera, {{100, 50, 140, 50}, {300, 400, 300, 350}});
+  const Pixels two = {{100, 50, 140, 50}, {300, 400, 300, 350}};
   for (const MotionEstimate& estimate :
        {MotionEstimate(), Weighted({1}), Weighted({1, 1, 1})}) {
-    const cv::Mat picture =
-        DrawMatches(GrayFrame(camera), camera, found, estimate, "");
+    const cv::Mat picture = Draw(camera, two, estimate);
     EXPECT_TRUE(IsGray(At(picture, 120, 50)));
     EXPECT_GT(At(picture, 120, 50)[0], At(picture, 120, 60)[0]);
   }
@@ -140,8 +137,7 @@ TEST(TrackingPicturesTest, TheCaptionAndTheLegendAreBelowTheImage) {
     camera.width = width;
     camera.height = width * 3 / 4;
     const auto draw = [&camera](const std::string& caption) {
-      return DrawMatches(GrayFrame(camera), camera, FeatureMatches(),
-                         MotionEstimate(), caption);
+      return Draw(camera, {}, MotionEstimate(), caption);
     };
     const cv::Mat plain = draw("");
     const cv::Mat titled = draw("frame 7  ok  1 of 1 matches  reference 3");
@@ -176,8 +172,7 @@ TEST(TrackingPicturesTest, LongCaptionsAreWrapped) {
   camera.width = 320;
   camera.height = 240;
   const auto draw = [&camera](const std::string& caption) {
-    return DrawMatches(GrayFrame(camera), camera, FeatureMatches(),
-                       MotionEstimate(), caption);
+    return Draw(camera, {}, MotionEstimate(), caption);
   };
   const std::string caption =
       "frame 1234  degraded  312 of 340 matches  reference 111";
@@ -191,10 +186,9 @@ TEST(TrackingPicturesTest, LongCaptionsAreWrapped) {
 
 TEST(TrackingPicturesTest, TakesAnythingThatIsFinite) {
   Camera camera{8, 6, 10, 10, 4, 3, 0.1, -0.2, 0.01, -0.02, 0.3};
-  const FeatureMatches found =
-      Matches(camera, {{9e5, -9e5, 9e5, 5}, {-50, -50, 50, 50}, {3, 3, 3, 3}});
-  const cv::Mat picture = DrawMatches(GrayFrame(camera), camera, found,
-                                      Weighted({-1, 0.5, 7}), "a caption");
+  const cv::Mat picture =
+      Draw(camera, {{9e5, -9e5, 9e5, 5}, {-50, -50, 50, 50}, {3, 3, 3, 3}},
+           Weighted({-1, 0.5, 7}), "a caption");
   EXPECT_EQ(picture.cols, 8);
   EXPECT_TRUE(IsYellow(At(picture, 3, 3)));
 }

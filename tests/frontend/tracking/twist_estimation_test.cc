@@ -110,9 +110,16 @@ VelocityPrior PriorWith(double sigma_angular, double sigma_linear) {
   return prior;
 }
 
-const Rigid3d kMotion(Eigen::Quaterniond(Eigen::AngleAxisd(
-                          0.03, Eigen::Vector3d(1, -1, 2).normalized())),
-                      {0.03, -0.02, 0.04});
+const Rigid3d kMotion = Rigid3d::FromRotationVector(
+    0.03 * Eigen::Vector3d(1, -1, 2).normalized(), {0.03, -0.02, 0.04});
+
+// Of all matches, in one step.
+TwistEstimate EstimateOnce(const Correspondences& matches,
+                           const FrameTiming& timing, const Twist& prior_mean,
+                           const VelocityPrior& prior) {
+  return EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
+                       kMotion, timing, prior_mean, prior);
+}
 
 // Iterates: each velocity moves the matches, which give a better velocity.
 Twist FoundTwist(const RollingMatches& matches, const VelocityPrior& prior,
@@ -120,9 +127,7 @@ Twist FoundTwist(const RollingMatches& matches, const VelocityPrior& prior,
   Twist twist = prior_mean;
   for (int round = 0; round < 4; ++round) {
     const Correspondences moved = matches.MovedBy(twist);
-    twist = EstimateTwist(moved, std::vector<bool>(moved.size(), true), 1.0,
-                          kMotion, TimingOf(twist), prior_mean, prior)
-                .twist;
+    twist = EstimateOnce(moved, TimingOf(twist), prior_mean, prior).twist;
   }
   return twist;
 }
@@ -154,9 +159,7 @@ TEST(TwistEstimationTest, DepthOfAnotherTimeTellsTheVelocity) {
     // In one step, the linear part of the velocity is correct.
     const Correspondences matches = exact.MovedBy(moved_by.twist);
     const Twist found =
-        EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
-                      kMotion, moved_by, Twist(), PriorWith(100.0, 100.0))
-            .twist;
+        EstimateOnce(matches, moved_by, Twist(), PriorWith(100.0, 100.0)).twist;
     EXPECT_LT(TwistError(found, kTwist), 0.1) << delay;
   }
 }
@@ -199,8 +202,7 @@ TEST(TwistEstimationTest, WithoutRowsTheMeanComesBack) {
   const RollingMatches seen(global, kMotion, 1.0, 3);
   const Correspondences matches = seen.MovedBy(global.twist);
   const TwistEstimate estimate =
-      EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
-                    kMotion, global, kTwist, PriorWith(0.1, 0.2));
+      EstimateOnce(matches, global, kTwist, PriorWith(0.1, 0.2));
   EXPECT_LT(TwistError(estimate.twist, kTwist), 1e-12);  // rounding
   EXPECT_LT(estimate.motion_covariance.norm(), 1e-20);
 }
@@ -221,9 +223,7 @@ TEST(TwistEstimationTest, TheLessIsKnownTheWiderTheMotion) {
   double last = 0.0;
   for (const double sigma : {0.01, 0.03, 0.1, 0.3, 1.0}) {
     const MotionMatrix covariance =
-        EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
-                      kMotion, TimingOf(kTwist), kTwist,
-                      PriorWith(sigma, sigma))
+        EstimateOnce(matches, TimingOf(kTwist), kTwist, PriorWith(sigma, sigma))
             .motion_covariance;
     EXPECT_GT(covariance.trace(), last) << sigma;
     EXPECT_LT((covariance - covariance.transpose()).norm(),
@@ -245,8 +245,7 @@ TEST(TwistEstimationTest, RowsTellNoMoreThanTheReferenceKnows) {
   for (const double sigma : {0.0, 0.1, 0.5, 1e3}) {
     prior.reference_covariance = IndependentErrors(sigma, sigma);
     const TwistEstimate found =
-        EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
-                      kMotion, TimingOf(Twist()), Twist(), prior);
+        EstimateOnce(matches, TimingOf(Twist()), Twist(), prior);
     const double error = TwistError(found.twist, kTwist);
     EXPECT_GT(error, last) << sigma;
     last = error;
