@@ -6,8 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "frontend/calibration/calibration_verdict.h"
 
 namespace rgbd_pose {

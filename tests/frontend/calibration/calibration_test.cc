@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,13 +12,12 @@
 #include "frontend/calibration/calibration_data.h"
 #include "frontend/calibration/calibration_run.h"
 #include "frontend/calibration/calibration_verdict.h"
-#include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/slam/slam.h"
 #include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/tum_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
-#include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {
 namespace {
@@ -190,15 +187,6 @@ TEST(CalibrationTest, KeepsACameraThatIsRight) {
   EXPECT_EQ(result.camera.camera.fx, Camera().fx);
 }
 
-TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
-  const CalibrationResult result =
-      Mapped(Render("still", 5), RgbdCamera()).Calibrate();
-  EXPECT_FALSE(result.is_accepted);
-  for (const CalibratedParameter& parameter : result.parameters) {
-    EXPECT_NE(parameter.status, Status::kDetermined);
-  }
-}
-
 SyntheticOptions RollingShutters() {
   SyntheticOptions options;
   options.color_shutter = {0.0, 0.028};
@@ -236,9 +224,13 @@ TEST(CalibrationTest, FindsShuttersAndClocks) {
   EXPECT_NEAR(ReadoutLeft(result, &HeldOutResidual::after), 0.0, 5e-4);
 }
 
-TEST(CalibrationTest, ACameraAtRestDoesNotTellItsShutters) {
+TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
   const CalibrationResult result =
       Mapped(Render("still", 5, RollingShutters()), {}).Calibrate();
+  EXPECT_FALSE(result.is_accepted);
+  for (const CalibratedParameter& parameter : result.parameters) {
+    EXPECT_NE(parameter.status, Status::kDetermined);
+  }
   for (const CalibrationIndex k : {kColorReadout, kDepthReadout, kDepthTime}) {
     EXPECT_EQ(Of(result, k).status, Status::kUndetermined);
     EXPECT_EQ(Of(result, k).found, 0.0);
@@ -304,9 +296,8 @@ TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {
 
 TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
   RgbdCamera first = Wrong();
-  first.depth_correction.depth_from_color = Rigid3d(
-      Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ())),
-      {0.01, 0.0, -0.02});
+  first.depth_correction.depth_from_color =
+      Rigid3d::FromRotationVector({0.0, 0.0, 0.01}, {0.01, 0.0, -0.02});
   CalibrationVector theta;
   theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.03, 0.04, 0.001, -0.002,
       0.003, 0.004, 0.025, -0.01, 0.005, -0.006, 0.007, 0.008, -0.009, 0.010,
@@ -346,34 +337,24 @@ TEST(CalibrationTest, AKnownLengthDoesNotSpanLostFrames) {
 // Fewer frames would make velocities, and with them readouts, too small.
 TEST(CalibrationTest, UsesAllFramesOfACameraWith30PerSecond) {
   const TempFolder folder;
-  std::string rgb, depth;
-  std::filesystem::create_directory(folder / "rgb");
-  std::filesystem::create_directory(folder / "depth");
-  constexpr int kFrames = 7;
-  for (int k = 0; k < kFrames; ++k) {
-    const std::string name = std::to_string(k) + ".png";
-    WriteImage(folder / ("rgb/" + name), ColorImage(k));
-    WriteImage(folder / ("depth/" + name), DepthImage(k));
-    const std::string stamp = std::to_string(1.0 + k / 30.0);
-    rgb += stamp + " rgb/" + name + "\n";
-    depth += stamp + " depth/" + name + "\n";
-  }
-  folder.Write("rgb.txt", rgb);
-  folder.Write("depth.txt", depth);
-  folder.Write("camera.yaml", FormatCameraFile(SmallCamera(), "ros_default"));
+  SyntheticOptions options;
+  options.frames = 7;
+  options.camera.camera = {64, 48, 60, 60, 31.5, 23.5};
+  SyntheticDataset recording(options);
+  WriteTumSequence(&recording, folder / "sequence");
   const auto count = [&folder](const CalibrationSettings& settings) {
     SequenceSettings sequence;
-    sequence.dataset = folder.path();
+    sequence.dataset = folder / "sequence";
     int used = 0;
     CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
                        settings, /*threads=*/1,
                        [&used](int, int, int all) { used = all; });
     return used;
   };
-  EXPECT_EQ(count({}), kFrames);
+  EXPECT_EQ(count({}), options.frames);
   CalibrationSettings slow;
   slow.max_rate = 15.0;
-  EXPECT_EQ(count(slow), (kFrames + 1) / 2);
+  EXPECT_EQ(count(slow), (options.frames + 1) / 2);
 }
 
 }  // namespace

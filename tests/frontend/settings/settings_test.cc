@@ -4,6 +4,8 @@
 
 #include <set>
 #include <string>
+#include <type_traits>
+#include <variant>
 
 #include "frontend/simulation/synthetic_dataset.h"
 #include "tests/support/expect_input_error.h"
@@ -31,16 +33,12 @@ TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
   OdometrySettings settings;
   std::set<const void*> places;
   for (const Setting& row : SettingTable(&settings)) {
-    if (int* const* whole = std::get_if<int*>(&row.value)) {
-      EXPECT_TRUE(places.insert(*whole).second) << row.name;
-    } else if (double* const* real = std::get_if<double*>(&row.value)) {
-      EXPECT_TRUE(places.insert(*real).second) << row.name;
-    } else if (bool* const* yes = std::get_if<bool*>(&row.value)) {
-      EXPECT_TRUE(places.insert(*yes).second) << row.name;
-    } else if (std::string* const* text =
-                   std::get_if<std::string*>(&row.value)) {
-      EXPECT_TRUE(places.insert(*text).second) << row.name;
-    }
+    const auto expect_new = [&](const auto& place) {
+      if constexpr (std::is_pointer_v<std::decay_t<decltype(place)>>) {
+        EXPECT_TRUE(places.insert(place).second) << row.name;
+      }
+    };
+    std::visit(expect_new, row.value);
   }
 }
 

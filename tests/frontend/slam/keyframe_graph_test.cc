@@ -7,11 +7,17 @@
 
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
+#include "tests/support/motions.h"
 
 namespace rgbd_pose {
 namespace {
 
 constexpr int kPoses = 40;
+
+// A certain motion of half a metre.
+RelativePose Step(int ref, int cur) {
+  return {ref, cur, Moved(0.5, 0.0, 0.0), 1e-6 * MotionMatrix::Identity()};
+}
 
 // One round on a circle, as measured by odometry.
 struct Circle {
@@ -130,11 +136,7 @@ TEST(KeyframeGraphTest, WhatHangsLooselyDoesNotKeepOthersFromBeingSolvedFor) {
     const double drift = circle.LastError();
     circle.graph.AddPair(circle.Measured(0, kPoses - 1), false, true);
     const int loose = circle.graph.Add(Rigid3d(), 0);
-    RelativePose step;
-    step.ref = loose;
-    step.cur = circle.graph.Add(Rigid3d(), 0);
-    step.cur_from_ref.translation.x() = 0.5;
-    step.covariance = 1e-6 * MotionMatrix::Identity();
+    const RelativePose step = Step(loose, circle.graph.Add(Rigid3d(), 0));
     circle.graph.AddPair(step, /*is_tracked=*/true);
     if (is_linked) {
       const MotionMatrix unknown = 4.0 * MotionMatrix::Identity();
@@ -168,17 +170,11 @@ TEST(KeyframeGraphTest, ASegmentMovesAsAWholeWhereItIsJoined) {
   Circle circle;
   const int first = circle.graph.Add(Rigid3d(), 7);
   const int second = circle.graph.Add(Rigid3d(), 7);
-  RelativePose step;
-  step.ref = first;
-  step.cur = second;
-  step.cur_from_ref.translation.x() = 0.5;
-  step.covariance = 1e-6 * MotionMatrix::Identity();
+  const RelativePose step = Step(first, second);
   circle.graph.AddPair(step, /*is_tracked=*/true);
   EXPECT_FALSE(
       circle.graph.PassesMahalanobisGate({3, second, {}, step.covariance}));
-  RelativePose met = step;
-  met.ref = 5;
-  met.cur = second;
+  RelativePose met = Step(5, second);
   met.cur_from_ref = circle.world.Motion(1.0, 1.0);
   const Rigid3d before =
       circle.graph.pose(first).Inverse() * circle.graph.pose(second);
