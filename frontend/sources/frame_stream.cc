@@ -65,7 +65,8 @@ std::optional<StreamedFrame> FrameStream::Next() {
     }
   }
   if (num_good_ > 0 || damaged_.empty()) return std::nullopt;
-  throw InputError(damaged_.front() + Hint());
+  // At the end of the source nothing is left to go on with.
+  throw InputError(damaged_.front() + (stopped_.empty() ? "" : Hint()));
 }
 
 std::string FrameStream::Hint() const {

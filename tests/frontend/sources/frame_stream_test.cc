@@ -1,5 +1,6 @@
 #include "frontend/sources/frame_stream.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -186,7 +187,14 @@ TEST_P(FrameStreamTest, WithoutAnyFrameTheFirstErrorIsThrown) {
   FakeSource damaged(2);
   damaged.unreadable = {0, 1};
   FrameStream stream(&damaged, nullptr, GetParam(), 0.05);
-  ExpectInputError([&stream] { stream.Next(); }, {"image 0 is broken"});
+  EXPECT_THAT([&stream] { stream.Next(); },
+              testing::ThrowsMessage<InputError>("image 0 is broken"));
+  // More frames than these are there, so it could go on.
+  FakeSource many(100);
+  many.unreadable = {0, 1, 2, 3, 4};
+  FrameStream few(&many, nullptr, GetParam(), 0.05);
+  ExpectInputError([&few] { few.Next(); },
+                   {"image 0 is broken; with max_damaged 1"});
   FakeSource missing(2);
   missing.missing = {0};
   FrameStream none(&missing, nullptr, GetParam(), 0.05);
