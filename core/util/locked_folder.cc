@@ -35,6 +35,9 @@ bool IsAt(int file, const fs::path& path) {
 LockedFolder::LockedFolder(fs::path path, const std::string& name,
                            const std::string& precious)
     : path_(std::move(path)), precious_(precious) {
+  // From before the folder exists until it is among `folders`: RemoveAll, in
+  // another thread, must not miss one that is just being created.
+  const std::lock_guard lock(mutex);
   const auto fail = [&name](const std::error_code& error) {
     throw InputError(name + " cannot be created or written (" +
                      error.message() + ")");
@@ -66,7 +69,6 @@ LockedFolder::LockedFolder(fs::path path, const std::string& name,
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     fs::remove_all(entry, error);
   }
-  const std::lock_guard lock(mutex);
   folders.insert(this);
 }
 
