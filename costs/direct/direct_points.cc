@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "core/estimation/inverse_depth_plane.h"
 #include "costs/direct/surface.h"
 
 namespace rgbd_pose {
@@ -19,28 +21,25 @@ int CellSize(double pixels, int max_points) {
 // Distance between the depths that a slope is computed from, px.
 constexpr int kSlopeStep = 3;
 
-// Whether the depths of the 3 x 3 pixels around a pixel belong to one surface,
-// with a slope of up to about 75 degrees.
-bool IsOneSurface(const FrameView& frame, int column, int row) {
+// The plane through the 3 x 3 depths around a pixel of the full resolution.
+// Nothing at holes, and where they do not belong to one surface with a slope of
+// up to about 75 degrees.
+std::optional<InverseDepthPlane> PlaneAround(const FrameView& frame, int column,
+                                             int row) {
   constexpr double kMaxRelativeStep = 0.02;
+  InverseDepthGrid<3> grid;
   double low = INFINITY, high = 0.0;
-  for (int v = row - 1; v <= row + 1; ++v) {
-    for (int u = column - 1; u <= column + 1; ++u) {
-      const double z = frame.DepthAt(u, v);
+  for (int v = -1; v <= 1; ++v) {
+    for (int u = -1; u <= 1; ++u) {
+      const double z = frame.DepthAt(column + u, row + v);
+      if (z == 0.0) continue;
       low = std::min(low, z);
       high = std::max(high, z);
+      grid.Add(u, v, 1.0 / z);
     }
   }
-  return low > 0.0 && high - low < kMaxRelativeStep * low;
-}
-
-// The depth at the centre of a level's pixel. (column, row) is the lower right
-// of the four full-resolution pixels there; at level 0, the pixel itself.
-double DepthBefore(const FrameView& frame, int column, int row, int scale) {
-  if (scale == 1) return frame.DepthAt(column, row);
-  return 0.25 *
-         (frame.DepthAt(column, row) + frame.DepthAt(column - 1, row) +
-          frame.DepthAt(column, row - 1) + frame.DepthAt(column - 1, row - 1));
+  if (!(high - low < kMaxRelativeStep * low)) return std::nullopt;
+  return grid.Fit();
 }
 
 // Finds the point (camera axes at the stamp, m) that a pixel of a level shows
@@ -76,14 +75,9 @@ bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
     }
     const int u = static_cast<int>(pixel.x() + 0.5);
     const int v = static_cast<int>(pixel.y() + 0.5);
-    if (!IsOneSurface(frame, u, v)) return false;
-    // The slope of the surface, as the pixel is not at (u, v) exactly.
-    const double right =
-        0.5 * (frame.DepthAt(u + 1, v) - frame.DepthAt(u - 1, v));
-    const double down =
-        0.5 * (frame.DepthAt(u, v + 1) - frame.DepthAt(u, v - 1));
-    const double seen =
-        frame.DepthAt(u, v) + right * (pixel.x() - u) + down * (pixel.y() - v);
+    const std::optional<InverseDepthPlane> plane = PlaneAround(frame, u, v);
+    if (!plane.has_value()) return false;
+    const double seen = 1.0 / plane->At(pixel.x() - u, pixel.y() - v);
     const double change = seen - measured.z();
     z += change;
     if (std::abs(change) < kSmallChange * z) break;
@@ -93,44 +87,34 @@ bool MovingPoint(const FrameView& frame, const FrameView::Level& level,
   return true;
 }
 
-// The plane through 5 x 5 inverse depths around a pixel of the full resolution:
-// 1 / z = inverse_depth + slope . (pixel - this pixel).
-struct InverseDepthPlane {
-  double inverse_depth = 0.0;                       // 1 / m
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // 1 / m per pixel
-};
-
-// Returns false at holes and where the depths form no plane, as at an edge.
-bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
-                          InverseDepthPlane* plane) {
+// The plane through 5 x 5 depths around a pixel of the full resolution, which
+// are kSlopeStep apart. Nothing where the depths form no plane, as at an edge,
+// and at any hole: so wide a window beside a Kinect's hole is mostly at an
+// edge.
+std::optional<InverseDepthPlane> WidePlaneAround(const FrameView& frame,
+                                                 int column, int row) {
   // Neighbours farther from the plane belong to another surface.
   constexpr double kMaxSigmas = 4.0;
-  constexpr int kSide = 5;
-  constexpr double kSquares = 50.0;  // sum of i^2 over the 25 places
-  double inverse[kSide * kSide], sum = 0.0, du = 0.0, dv = 0.0;
+  constexpr int kSide = 5, kHalf = kSide / 2;
+  double inverse[kSide * kSide];
+  InverseDepthGrid<kSide> grid;
   for (int k = 0; k < kSide * kSide; ++k) {
-    const int i = k % kSide - 2, j = k / kSide - 2;
-    const uint16_t raw =
-        frame.depth.At(column + i * kSlopeStep, row + j * kSlopeStep);
-    if (raw == 0 || raw == UINT16_MAX) return false;
-    inverse[k] = frame.depth_scale / raw;
-    sum += inverse[k];
-    du += i * inverse[k];
-    dv += j * inverse[k];
+    const int i = k % kSide - kHalf, j = k / kSide - kHalf;
+    const double z =
+        frame.DepthAt(column + i * kSlopeStep, row + j * kSlopeStep);
+    if (z == 0.0) return std::nullopt;
+    inverse[k] = 1.0 / z;
+    grid.Add(i, j, inverse[k]);
   }
-  du /= kSquares;
-  dv /= kSquares;
-  plane->inverse_depth = sum / (kSide * kSide);
-  plane->slope = {du / kSlopeStep, dv / kSlopeStep};
-  const double depth = 1.0 / plane->inverse_depth;
-  const double limit = kMaxSigmas * frame.depth_noise.sigma(depth) *
-                       plane->inverse_depth * plane->inverse_depth;
+  const InverseDepthPlane plane = *grid.Fit();
+  const double depth = 1.0 / plane.middle;
+  const double limit =
+      kMaxSigmas * frame.depth_noise.sigma(depth) * plane.middle * plane.middle;
   for (int k = 0; k < kSide * kSide; ++k) {
-    const int right = k % kSide - 2, down = k / kSide - 2;
-    const double fit = plane->inverse_depth + right * du + down * dv;
-    if (!(std::abs(inverse[k] - fit) <= limit)) return false;
+    const int i = k % kSide - kHalf, j = k / kSide - kHalf;
+    if (!(std::abs(inverse[k] - plane.At(i, j)) <= limit)) return std::nullopt;
   }
-  return true;
+  return plane;
 }
 
 // The pixel of a cell with the largest gradient; (-1, -1) if no pixel exceeds
@@ -161,6 +145,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
   const int cell = CellSize(static_cast<double>(gray.width) * gray.height,
                             options.max_points);
   const int scale = 1 << level_index;
+  const double to_centre = scale == 1 ? 0.0 : -0.5;  // px
   const int border = std::max(2, (kBorder + scale - 1) / scale);
   const int flat =
       static_cast<int>(4.0 * options.min_gradient * options.min_gradient);
@@ -174,7 +159,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
       const Eigen::Vector2i at =
           SteepestPixel(gray, left, top, right, bottom, flat);
       if (at.x() < 0) continue;
-      // The centre of the level's pixel, at full resolution.
+      // The full-resolution pixel at its centre, or to the lower right of it.
       const int u = at.x() * scale + scale / 2;
       const int v = at.y() * scale + scale / 2;
       double depth = 0.0;
@@ -183,8 +168,9 @@ void TexturedPoints(const FrameView& frame, int level_index,
         if (!MovingPoint(frame, level, at, u, v, &depth, &X)) continue;
         X = frame.reference_from_stamp * X;
       } else {
-        if (!IsOneSurface(frame, u, v)) continue;
-        depth = DepthBefore(frame, u, v, scale);
+        const std::optional<InverseDepthPlane> plane = PlaneAround(frame, u, v);
+        if (!plane.has_value()) continue;
+        depth = 1.0 / plane->At(to_centre, to_centre);
         X = level.camera.Unproject(at.cast<double>(), depth);
         if (!X.allFinite()) continue;
       }
@@ -216,28 +202,29 @@ void SmoothPoints(const FrameView& frame, int /*level*/,
       moved = frame.reference_from_stamp * timing.twist.MotionBack(taken_at);
     }
     for (int u = kBorder + cell / 2; u < width - kBorder; u += cell) {
-      InverseDepthPlane fit;
-      if (!FitInverseDepthPlane(frame, u, v, &fit)) continue;
-      const double depth = 1.0 / fit.inverse_depth;
+      const std::optional<InverseDepthPlane> fit = WidePlaneAround(frame, u, v);
+      if (!fit.has_value()) continue;
+      const double inverse_depth = fit->middle;
+      const double depth = 1.0 / inverse_depth;
       if (depth < options.min_depth || depth > options.max_depth) continue;
       Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
       const Eigen::Vector3d ray = X / depth;
       Eigen::Matrix2d pixels = camera.ProjectDerivative(ray.head<2>());
-      Eigen::Vector2d by_pixel = fit.slope;
+      Eigen::Vector2d by_pixel = fit->slope / kSlopeStep;
       if (moves) {
         // The next row is measured later, from where the camera is then.
         Eigen::Vector3d velocity;
         timing.twist.After(taken_at).PointVelocity(X.data(), velocity.data());
-        const double shift = per_row * fit.inverse_depth;
+        const double shift = per_row * inverse_depth;
         Eigen::Matrix2d rays = pixels.inverse();
         rays.col(1) -=
             shift * (velocity.head<2>() - velocity.z() * ray.head<2>());
-        by_pixel.y() += shift * fit.inverse_depth * velocity.z();
+        by_pixel.y() += shift * inverse_depth * velocity.z();
         pixels = rays.inverse();
       }
       const Eigen::Vector2d slope = pixels.transpose() * by_pixel;
       Eigen::Vector3d N(slope.x(), slope.y(),
-                        fit.inverse_depth - slope.dot(ray.head<2>()));
+                        inverse_depth - slope.dot(ray.head<2>()));
       if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;
       if (moves) {
         X = moved * X;

@@ -3,8 +3,10 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <vector>
 
+#include "core/estimation/inverse_depth_plane.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
 
@@ -44,27 +46,19 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
 
   const double sigma = options.noise.sigma(centre);
   const double limit = kMaxNoiseStep * sigma + 2.0 * kMaxSlope * centre;
-  int valid = 0;
-  double sum = 0.0, slope_u = 0.0, slope_v = 0.0;
+  InverseDepthGrid<3> grid;
   for (int dv = -1; dv <= 1; ++dv) {
     for (int du = -1; du <= 1; ++du) {
       const double depth = frame.DepthAt(column + du, row + dv);
       if (depth == 0.0) continue;
       if (std::abs(depth - centre) > limit) return {};
-      const double inverse = 1.0 / depth;
-      sum += inverse;
-      slope_u += du * inverse;
-      slope_v += dv * inverse;
-      ++valid;
+      grid.Add(du, dv, 1.0 / depth);
     }
   }
-  // Fewer valid neighbours mean the edge of an object or of a hole.
-  if (valid < 6) return {};
-  if (valid < 9) return {centre, sigma};
-  // Least squares on the full 3 x 3 grid: the mean and sum(x y) / sum(x^2).
-  const double inverse =
-      sum / 9.0 + slope_u / 6.0 * (u - column) + slope_v / 6.0 * (v - row);
-  return {1.0 / inverse, sigma * options.noise.mean_share};
+  const std::optional<InverseDepthPlane> plane = grid.Fit();
+  if (!plane.has_value()) return {};
+  return {1.0 / plane->At(u - column, v - row),
+          sigma * options.noise.mean_share * plane->relative_sigma};
 }
 
 // A plane A X + B Y + C Z = 1 has the inverse depth A x + B y + C over the
@@ -82,33 +76,32 @@ Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
       row >= frame.depth.rows - kStridePx) {
     return Eigen::Vector3d::Zero();
   }
-  double inverse[3][3];
-  double mean = 0.0, slope_u = 0.0, slope_v = 0.0;
+  double inverse[3][3];  // 0: unknown
+  InverseDepthGrid<3> grid;
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {
       const double depth =
           frame.DepthAt(column + j * kStridePx, row + i * kStridePx);
-      if (depth == 0.0) return Eigen::Vector3d::Zero();
-      inverse[i + 1][j + 1] = 1.0 / depth;
-      mean += inverse[i + 1][j + 1] / 9.0;
-      slope_u += j * inverse[i + 1][j + 1] / 6.0;
-      slope_v += i * inverse[i + 1][j + 1] / 6.0;
+      inverse[i + 1][j + 1] = depth > 0.0 ? 1.0 / depth : 0.0;
+      if (depth > 0.0) grid.Add(j, i, 1.0 / depth);
     }
   }
+  const std::optional<InverseDepthPlane> plane = grid.Fit();
+  if (!plane.has_value()) return Eigen::Vector3d::Zero();
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {
-      const double plane = mean + j * slope_u + i * slope_v;
-      if (std::abs(inverse[i + 1][j + 1] - plane) > kMaxDeviation * mean) {
+      const double seen = inverse[i + 1][j + 1];
+      if (seen > 0.0 &&
+          std::abs(seen - plane->At(j, i)) > kMaxDeviation * plane->middle) {
         return Eigen::Vector3d::Zero();
       }
     }
   }
   const Eigen::Matrix2d pixels = camera.ProjectDerivative(place);
-  const Eigen::Vector2d slope =
-      pixels.transpose() * Eigen::Vector2d(slope_u, slope_v) / kStridePx;
+  const Eigen::Vector2d slope = pixels.transpose() * plane->slope / kStridePx;
   const Eigen::Vector2d middle =
       place + pixels.inverse() * Eigen::Vector2d(column - u, row - v);
-  const double c = mean - slope.dot(middle);
+  const double c = plane->middle - slope.dot(middle);
   return -Eigen::Vector3d(slope.x(), slope.y(), c).normalized();
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -96,6 +97,31 @@ struct Candidate {
   int square = 0;  // squared gradient over two pixels
 };
 
+// The depth at (x, y) by the plane through those of the 3 x 3 pixels around
+// (column, row) that have one: 1 / z = p . (1, u, v). 0: too many have none, or
+// they are on two surfaces.
+double DepthOfPlane(const FrameView& view, int column, int row, double x,
+                    double y) {
+  std::vector<double> known;
+  Eigen::MatrixXd rows(0, 3);
+  Eigen::VectorXd right(0);
+  for (int k = 0; k < 9; ++k) {
+    const int u = column + k % 3 - 1, v = row + k / 3 - 1;
+    const double z = view.DepthAt(u, v);
+    if (z == 0.0) continue;
+    known.push_back(z);
+    rows.conservativeResize(known.size(), Eigen::NoChange);
+    right.conservativeResize(known.size());
+    rows.bottomRows<1>() << 1.0, u, v;
+    right.tail<1>() << 1.0 / z;
+  }
+  if (known.size() < 6) return 0.0;
+  const auto [low, high] = std::minmax_element(known.begin(), known.end());
+  if (*high >= 1.02 * *low) return 0.0;
+  const Eigen::Vector3d plane = rows.colPivHouseholderQr().solve(right);
+  return 1.0 / plane.dot(Eigen::Vector3d(1.0, x, y));
+}
+
 std::optional<Candidate> CandidateAt(const FrameView& view, int index, int u,
                                      int v, const DirectOptions& options) {
   const FrameView::Level& level = view.levels[index];
@@ -105,24 +131,12 @@ std::optional<Candidate> CandidateAt(const FrameView& view, int index, int u,
   if (std::sqrt(square) / 2.0 <= options.min_gradient) return std::nullopt;
   Candidate candidate;
   candidate.square = square;
-  const int x = index == 0 ? u : 2 * u + 1, y = index == 0 ? v : 2 * v + 1;
-  double low = 1e9, high = 0.0;
-  for (int k = 0; k < 9; ++k) {
-    const double z = view.DepthAt(x + k % 3 - 1, y + k / 3 - 1);
-    low = std::min(low, z);
-    high = std::max(high, z);
-  }
-  double z = view.DepthAt(x, y);
-  if (index == 1) {
-    z = (z + view.DepthAt(x - 1, y) + view.DepthAt(x, y - 1) +
-         view.DepthAt(x - 1, y - 1)) /
-        4.0;
-  }
+  // The pixels of level 1 are between four of level 0.
+  const double z = index == 0 ? DepthOfPlane(view, u, v, u, v)
+                              : DepthOfPlane(view, 2 * u + 1, 2 * v + 1,
+                                             2 * u + 0.5, 2 * v + 0.5);
   // A cell whose steepest pixel has no valid depth has no point.
-  if (low <= 0.0 || high >= 1.02 * low || z < options.min_depth ||
-      z > options.max_depth) {
-    return candidate;
-  }
+  if (z < options.min_depth || z > options.max_depth) return candidate;
   const Camera& camera = level.camera;
   candidate.point.resize(5);
   candidate.point << (u - camera.cx) / camera.fx * z,
@@ -252,6 +266,15 @@ TEST(SmoothPointsTest, OfAnEdgeThereIsNone) {
     EXPECT_EQ(CountWithOneOff(5.2, z), 0u) << z;
     EXPECT_EQ(CountWithOneOff(-5.2, z), 0u) << z;
   }
+}
+
+TEST(SmoothPointsTest, BesideAHoleThereIsNone) {
+  PaintedFrame frame(kSide, kSide);
+  frame.PaintPlane(0.5, 0.003, -0.002);
+  frame.SetDepth(kMiddle + 1, kMiddle, 0.0);
+  EXPECT_EQ(SmoothPointsOf(frame).size(), 1u) << "between the pixels used";
+  frame.SetDepth(kMiddle + 3, kMiddle, 0.0);
+  EXPECT_TRUE(SmoothPointsOf(frame).empty());
 }
 
 }  // namespace

@@ -30,16 +30,25 @@ TEST(DepthLookupTest, ReadsAFlatWall) {
   EXPECT_DOUBLE_EQ(sample.sigma, 1.425e-3 * 4.0);
 }
 
-// Inverse depth is linear over the image of a plane: exact between pixels.
-TEST(DepthLookupTest, ReadsASlantedWallBetweenPixels) {
+// A wall that is seen at an angle: its inverse depth is linear in the image.
+double SlantedDepth(double column) {
+  return 1.0 / (0.5 + 1e-3 * (column - 300));
+}
+
+Frame SlantedFrame() {
   Frame frame = FlatFrame(2.0);
   for (int row = 0; row < 480; ++row) {
     for (int column = 0; column < 640; ++column) {
-      Set(&frame, column, row, 1.0 / (0.5 + 1e-3 * (column - 300)));
+      Set(&frame, column, row, SlantedDepth(column));
     }
   }
-  const DepthSample sample = LookUpDepth(frame, 320.4, 240.0, {});
-  EXPECT_NEAR(sample.depth, 1.0 / (0.5 + 1e-3 * 20.4), kRawStep);
+  return frame;
+}
+
+// Exact between pixels.
+TEST(DepthLookupTest, ReadsASlantedWallBetweenPixels) {
+  const DepthSample sample = LookUpDepth(SlantedFrame(), 320.4, 240.0, {});
+  EXPECT_NEAR(sample.depth, SlantedDepth(320.4), kRawStep);
 }
 
 TEST(DepthLookupTest, NeverMixesTwoSurfaces) {
@@ -51,14 +60,20 @@ TEST(DepthLookupTest, NeverMixesTwoSurfaces) {
   EXPECT_NEAR(LookUpDepth(frame, 321.0, 240.0, {}).depth, 2.5, kRawStep);
 }
 
-TEST(DepthLookupTest, TakesTheCentreBesideAFewHoles) {
-  Frame frame = FlatFrame(2.0);
-  Set(&frame, 100, 100, 2.004);
-  Set(&frame, 101, 100, 0.0);
-  frame.depth.at<uint16_t>(101, 101) = Frame::kNoDepth;
-  EXPECT_NEAR(LookUpDepth(frame, 100.4, 100.0, {}).depth, 2.004, kRawStep);
-  for (int column = 99; column <= 101; ++column) Set(&frame, column, 99, 0.0);
-  EXPECT_EQ(LookUpDepth(frame, 100.4, 100.0, {}).depth, 0.0);
+// The same plane as long as six of nine pixels have a depth, less well known.
+TEST(DepthLookupTest, FitsThePlaneBesideAFewHoles) {
+  Frame frame = SlantedFrame();
+  const double complete = LookUpDepth(frame, 320.4, 240.0, {}).sigma;
+  Set(&frame, 321, 239, 0.0);
+  Set(&frame, 321, 240, 0.0);
+  frame.depth.at<uint16_t>(241, 321) = Frame::kNoDepth;
+  const DepthSample sample = LookUpDepth(frame, 320.4, 240.0, {});
+  EXPECT_NEAR(sample.depth, SlantedDepth(320.4), 2.0 * kRawStep);
+  // Two of three columns know their mean a third as well as nine pixels do, as
+  // the middle is at their edge.
+  EXPECT_NEAR(sample.sigma, std::sqrt(3.0) * complete, 1e-6);
+  Set(&frame, 319, 240, 0.0);
+  EXPECT_EQ(LookUpDepth(frame, 320.4, 240.0, {}).depth, 0.0);
 }
 
 TEST(DepthLookupTest, HasNoneOnAHoleOutsideOrBeyondTheLimits) {
@@ -119,9 +134,21 @@ TEST(SurfaceNormalTest, HasNoneAtEdgesHolesAndBorders) {
   EXPECT_EQ(NormalAt(frame, camera, 2.0, 240.0), Vector3d::Zero());
   frame.depth.colRange(322, 640).setTo(12500);
   EXPECT_EQ(NormalAt(frame, camera, 320.0, 240.0), Vector3d::Zero());
+  frame.depth.rowRange(95, 96).setTo(0);
   frame.depth.at<uint16_t>(100, 105) = 0;
   EXPECT_EQ(NormalAt(frame, camera, 100.0, 100.0), Vector3d::Zero());
   EXPECT_NE(NormalAt(frame, camera, 200.0, 200.0), Vector3d::Zero());
+}
+
+TEST(SurfaceNormalTest, IsThatOfTheRestBesideAFewHoles) {
+  const Camera camera;
+  const Vector3d normal = Vector3d(0.5, 0.2, -1).normalized();
+  Frame frame = PlaneFrame(camera, normal, 1.5);
+  frame.depth.colRange(305, 306).setTo(0);
+  EXPECT_LE((NormalAt(frame, camera, 310.0, 240.0) - normal).norm(), 0.02);
+  // One of the six others is on another surface.
+  frame.depth.at<uint16_t>(235, 315) += 400;
+  EXPECT_EQ(NormalAt(frame, camera, 310.0, 240.0), Vector3d::Zero());
 }
 
 using testing::HasSubstr;
