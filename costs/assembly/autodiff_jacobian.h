@@ -6,7 +6,7 @@
 
 namespace rgbd_pose {
 
-// Detects a hand-written Jacobian of a residual type (docs/add_a_cost.md).
+// Detects a hand-written Jacobian of a residual type (see CostOf).
 template <typename Type>
 using JacobianOf = decltype(&Type::template Jacobian<double>);
 

@@ -49,7 +49,7 @@ struct ForwardError {
 // multiplies, for any scalars; the weights follow the columns of ForwardError.
 template <typename Type, int rows>
 struct WeightedForwardError {
-  // Constants that every residual type has, see docs/add_a_cost.md.
+  // Constants that every residual type has, see CostOf.
   static constexpr int kRows = rows;
   static constexpr int kDegreesOfFreedom = rows;
   static constexpr bool kIsWhitened = true;
