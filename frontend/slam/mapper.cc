@@ -71,7 +71,11 @@ void Mapper::Index(int at) {
 
 void Mapper::Load(const KeyframeMap& map, bool is_held) {
   RequireSound(map.Check(), "map: ");
-  RequireSound(map.CheckCamera(tracker_->images().camera), "map: ");
+  const std::string difference = map.CheckCamera(tracker_->images().camera);
+  if (!difference.empty()) {
+    throw InputError("map: " + difference +
+                     "; give the camera that made the map, or make a new one");
+  }
   for (const Keyframe& keyframe : map.keyframes) {
     Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }
