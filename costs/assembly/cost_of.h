@@ -16,45 +16,45 @@ using AssociationOf = decltype(Residual::kAssociation);
 // The MotionCost of a residual type over matches: binding, sums and the three
 // assemblies. A residual type has no state and defines
 //
-//   kName              its name for programs
-//   kRows              the number of residuals per match
-//   kDegreesOfFreedom  how many of them are independent, which determines the
-//                      widths of losses
-//   kColumns           how many numbers it keeps per match
-//   kAssociation       when to pack again. AssociationPolicy::kOnce (the
-//                      default): never, as Pack uses measurements only;
-//                      kWhenMoved: when the motion has changed considerably,
-//                      as frozen weights depend on it (the default of
-//                      WeightedForwardError); kEveryStep: after every solver
-//                      step, as pixels are looked up elsewhere
-//   kIsWhitened        whether the rows of correct matches have unit variance
-//                      and are independent. If not, the covariance comes from
-//                      their scatter, and InlierLimit(columns) gives the
-//                      squared norm below which 99 % of correct matches lie
+//     kName              its name for programs
+//     kRows              the number of residuals per match
+//     kDegreesOfFreedom  how many of them are independent, which determines the
+//                        widths of losses
+//     kColumns           how many numbers it keeps per match
+//     kAssociation       when to pack again. AssociationPolicy::kOnce (the
+//                        default): never, as Pack uses measurements only;
+//                        kWhenMoved: when the motion has changed considerably,
+//                        as frozen weights depend on it (the default of
+//                        WeightedForwardError); kEveryStep: after every solver
+//                        step, as pixels are looked up elsewhere
+//     kIsWhitened        whether the rows of correct matches have unit variance
+//                        and are independent. If not, the covariance comes from
+//                        their scatter, and InlierLimit(columns) gives the
+//                        squared norm below which 99 % of correct matches lie
 //
-//   // Stores match i; false if it cannot be used (for example, a depth is
-//   // missing). Never returns a zero residual instead.
-//   static bool Pack(const CostInput& input, size_t i, double* columns);
+//     // Stores match i; false if it cannot be used (for example, a depth is
+//     // missing). Never returns a zero residual instead.
+//     static bool Pack(const CostInput& input, size_t i, double* columns);
 //
-//   // r for any scalars.
-//   template <typename M, typename D, typename T>
-//   static void Residual(const RotationAndCenter<M>& motion, const D* columns,
-//                        T* r);
+//     // r for any scalars.
+//     template <typename M, typename D, typename T>
+//     static void Residual(const RotationAndCenter<M>& motion,
+//                          const D* columns, T* r);
 //
-//   // r and dr/d[alpha beta gamma Cx Cy Cz], by hand. Without it, r is
-//   // differentiated automatically, which takes several times as long.
-//   template <typename D>
-//   static void Jacobian(const MotionDerivatives& motion, const D* columns,
-//                        D* r, D (*J)[6]);
+//     // r and dr/d[alpha beta gamma Cx Cy Cz], by hand. Without it, r is
+//     // differentiated automatically, which takes several times as long.
+//     template <typename D>
+//     static void Jacobian(const MotionDerivatives& motion, const D* columns,
+//                          D* r, D (*J)[6]);
 //
 // and, where they apply,
 //
-//   Degrees(columns)   if a match may lack measurements
-//   kPointTerms, PointTerms
-//                      one vector per point: sums take half the time
-//                      (costs/parts/point_sums.h)
-//   kIsPrior           it packs the prior, not matches
-//                      (costs/matches/motion_prior.h)
+//     Degrees(columns)   if a match may lack measurements
+//     kPointTerms, PointTerms
+//                        one vector per point: sums take half the time
+//                        (costs/parts/point_sums.h)
+//     kIsPrior           it packs the prior, not matches
+//                        (costs/matches/motion_prior.h)
 template <typename Type>
 class CostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;
