@@ -3,6 +3,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "apps/python/bindings.h"
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
@@ -11,6 +13,32 @@
 #include "robust/m_estimator.h"
 
 namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+// Lets pickle.dumps(object, 0) and 1 work, or say what cannot be pickled: they
+// would call a base class of pybind11, which ends the process. All classes of
+// the module use protocol 2 instead.
+void RequirePickleProtocol2(const py::module_& module) {
+  const py::object reduce =
+      py::module_::import("builtins").attr("object").attr("__reduce_ex__");
+  const auto reduce_ex = [reduce](const py::object& self, int protocol) {
+    return reduce(self, std::max(protocol, 2));
+  };
+  for (const auto& [name, item] : module.attr("__dict__").cast<py::dict>()) {
+    // Exceptions are Python's own.
+    if (!py::isinstance<py::type>(item) || PyExceptionClass_Check(item.ptr())) {
+      continue;
+    }
+    py::setattr(item, "__reduce_ex__",
+                py::cpp_function(reduce_ex, py::name("__reduce_ex__"),
+                                 py::is_method(item), py::arg("protocol")));
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose
 
 PYBIND11_MODULE(_rgbd_pose, m) {
   using namespace rgbd_pose;
@@ -36,5 +64,6 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   BindEvaluation(&m);
   BindExport(&m);
   BindCalibration(&m);
+  RequirePickleProtocol2(m);
   m.attr("__name__") = own_name;
 }

@@ -9,6 +9,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/factor_problem.h"
+#include "apps/python/pickling.h"
 #include "apps/python/problem.h"
 #include "apps/python/released_gil.h"
 #include "core/factors/blocks.h"
@@ -18,6 +19,12 @@
 namespace py = pybind11;
 
 namespace rgbd_pose {
+
+static void EachField(PickledBytes* bytes, FactorSolverSummary& s) {
+  (*bytes)(s.status, s.reason, s.initial_cost, s.final_cost, s.iterations,
+           s.solve_ms);
+}
+
 namespace {
 
 FactorSolverSummary Solve(const Problem& problem, int max_iterations) {
@@ -91,7 +98,7 @@ void BindSummary(py::module_* module) {
   property("final_cost", &Summary::final_cost, "the same at the end");
   property("iterations", &Summary::iterations, "steps that were tried");
   property("solve_ms", &Summary::solve_ms, "solver time, ms");
-  summary.def("__repr__", &SummaryInWords);
+  summary.def("__repr__", &SummaryInWords).def(Pickled<Summary>());
 }
 
 void BindPoses(py::module_* module) {

@@ -3,6 +3,8 @@
 import copy
 import multiprocessing
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -60,6 +62,41 @@ def test_estimates():
     assert same.ok and repr(same) == repr(first)
     for name in ("cur_from_prev", "covariance", "weights", "inliers"):
         assert np.array_equal(getattr(same, name), getattr(first, name)), name
+
+
+def test_summaries_of_solves():
+    poses = np.tile(rgbd_pose.pose_block(np.eye(4)), (2, 1))
+    poses[1, 4] = 0.5
+    problem = rgbd_pose.Problem()
+    factor = rgbd_pose.RelativePoseFactor(np.eye(4), np.eye(6))
+    problem.add_residual_block(factor, None, list(poses))
+    summary = rgbd_pose.solve(problem)
+    for same in (again(summary), copy.copy(summary)):
+        assert same.ok and repr(same) == repr(summary)
+        assert same.solve_ms == summary.solve_ms
+    problem.set_parameter_block_constant(poses[0])
+    poses[1, 4] = 0.5
+    unfinished = rgbd_pose.solve(problem, max_iterations=1)
+    assert again(unfinished).reason == unfinished.reason != ""
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol(protocol):
+    # In a process of its own, which protocols 0 and 1 might end.
+    program = f"""
+import pickle, rgbd_pose
+camera = rgbd_pose.Camera(500, 500, 320, 240)
+assert repr(pickle.loads(pickle.dumps(camera, {protocol}))) == repr(camera)
+try:
+    pickle.dumps(rgbd_pose.Problem(), {protocol})
+except TypeError as error:
+    print(error)
+"""
+    ended = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert ended.stdout == "cannot pickle 'rgbd_pose.Problem' object\n"
 
 
 def test_errors_of_trajectories():
