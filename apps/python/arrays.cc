@@ -156,18 +156,27 @@ py::array ToPython(const Rigid3d& motion) {
 }
 
 std::string PathFrom(const py::object& path) {
-  return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+  auto bytes =
+      py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+  if (bytes.find('\0') != std::string::npos) {
+    throw InputError("path " + py::repr(path).cast<std::string>() +
+                     ": has a null character, which no path has");
+  }
+  return bytes;
 }
 
 py::str PathTo(const std::string& path) {
   return py::module_::import("os").attr("fsdecode")(py::bytes(path));
 }
 
+py::str TextOf(const std::string& message) {
+  return py::reinterpret_steal<py::str>(PyUnicode_DecodeUTF8(
+      message.data(), static_cast<py::ssize_t>(message.size()), "replace"));
+}
+
 void WarnUser(const std::string& remark) {
   if (remark.empty()) return;
-  // A path in it may not be valid UTF-8.
-  const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
-      remark.data(), static_cast<py::ssize_t>(remark.size()), "replace"));
+  const py::str text = TextOf(remark);
   if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", text.ptr()) != 0) {
     throw py::error_already_set();  // users may make warnings errors
   }

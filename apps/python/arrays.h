@@ -114,9 +114,13 @@ auto PropertiesOf(Class* type) {
   };
 }
 
-// Paths are bytes here and, as in os.fsdecode, text in Python.
+// Paths are bytes here and, as in os.fsdecode, text in Python. A null
+// character, where the system would end the path, throws InputError.
 std::string PathFrom(const pybind11::object& path);
 pybind11::str PathTo(const std::string& path);
+
+// A message as text, also if a path in it is not valid UTF-8.
+pybind11::str TextOf(const std::string& message);
 
 // Shows users a remark, for example on a file, as a UserWarning, unless it is
 // empty.

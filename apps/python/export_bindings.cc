@@ -72,9 +72,10 @@ void BindWritten(py::module_* module) {
   const auto property = PropertiesOf(&written);
   const auto path = [](const WrittenExport& self) { return PathTo(self.path); };
   property("path", path, "file or folder");
-  property("summary", &WrittenExport::summary,
-           "what is in it, as text: the numbers of points, triangles, poses or "
-           "images");
+  property(
+      "summary", [](const WrittenExport& self) { return TextOf(self.summary); },
+      "what is in it, as text: the numbers of points, triangles, poses or "
+      "images");
   written.def("__fspath__", path);
   written.def("__repr__", [path](const WrittenExport& self) {
     return "Export(" + py::repr(path(self)).cast<std::string>() + ")";

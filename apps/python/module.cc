@@ -4,7 +4,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <exception>
 
+#include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
@@ -16,6 +18,23 @@ namespace py = pybind11;
 
 namespace rgbd_pose {
 namespace {
+
+// Raises InputError in Python; its message may have a path that is not UTF-8.
+void BindInputError(py::module_* module) {
+  static const py::handle type =
+      py::exception<InputError>(*module, "InputError", PyExc_ValueError)
+          .release();
+  type.attr("__doc__") =
+      "Bad input. The message is one line: what is wrong, where, what to do.";
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for it.
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown != nullptr) std::rethrow_exception(thrown);
+    } catch (const InputError& error) {
+      PyErr_SetObject(type.ptr(), TextOf(error.what()).ptr());
+    }
+  });
+}
 
 // Lets pickle.dumps(object, 0) and 1 work, or say what cannot be pickled: they
 // would call a base class of pybind11, which ends the process. All classes of
@@ -46,8 +65,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "rgbd_pose";
   m.attr("__version__") = RGBD_POSE_VERSION;
-  py::register_exception<InputError>(m, "InputError", PyExc_ValueError).doc() =
-      "Bad input. The message is one line: what is wrong, where, what to do.";
+  BindInputError(&m);
   m.def("costs", CostNames, "Names of all costs.");
   m.def("losses", MEstimatorNames, "Names of all M-estimators.");
   m.def("frontends", FrontendNames, "Names of all frontends.");

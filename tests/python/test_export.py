@@ -95,6 +95,13 @@ def test_a_name_of_its_own(run):
     )
 
 
+def test_a_name_that_is_not_utf_8(run, tmp_path):
+    output = tmp_path / os.fsdecode(b"caf\xe9.txt")
+    written = rgbd_pose.export_run(run, "tum", output)
+    assert written.path == str(output)
+    assert "8 poses in" in written.summary
+
+
 def test_says_what_is_wrong(run, recording, sequence, tmp_path):
     path = run / "trajectory.txt"
 

@@ -113,6 +113,17 @@ def test_refuses_what_it_cannot_read(sequence, tmp_path):
             rgbd_pose.Recording(path, **settings)
 
 
+def test_says_which_path_is_wrong_whatever_its_name(tmp_path):
+    missing = os.fsdecode(b"caf\xe9")  # not UTF-8
+    with pytest.raises(rgbd_pose.InputError, match="caf.*: no such"):
+        rgbd_pose.Recording(tmp_path / missing)
+    with pytest.raises(rgbd_pose.InputError, match="null character"):
+        rgbd_pose.write_trajectory(
+            f"{tmp_path}/path\0.txt", ([0.0], [np.eye(4)])
+        )
+    assert os.listdir(tmp_path) == []
+
+
 def test_has_a_length_and_frames_by_number(sequence, whole):
     recording = rgbd_pose.Recording(sequence, frames="2-6:2")
     assert len(recording) == 3
