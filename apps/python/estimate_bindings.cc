@@ -7,6 +7,7 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
+#include "apps/python/factor_arguments.h"
 #include "apps/python/matches.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
@@ -139,12 +140,13 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   const py::sequence pair = prior;
   MotionPrior result;
   result.mean = RigidFromArray(pair[0], "prior[0]");
-  const NumberArray covariance(pair[1], "prior[1]", {6, 6});
-  const MotionMatrix matrix =
-      MotionMatrix::NullaryExpr([&](int i, int j) { return covariance(i, j); });
-  // The covariance of a failed estimate is zero, so nothing is known.
-  const Eigen::LLT<MotionMatrix> cholesky(matrix);
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
+  const MotionMatrix covariance = SymmetricFrom<6>(pair[1], "prior[1]");
+  // That of a failed estimate: nothing is known.
+  if (covariance.isZero(0.0)) return std::nullopt;
+  const Eigen::LLT<MotionMatrix> cholesky(covariance);
+  if (cholesky.info() != Eigen::Success) {
+    throw InputError("prior[1]: is not positive definite");
+  }
   result.information = cholesky.solve(MotionMatrix::Identity());
   return result;
 }
@@ -248,8 +250,8 @@ initial_guess: where the solver starts: "identity", "ransac", "clique", or a
 sigma_px: standard deviation of u and of v in each frame (px).
 normals_cur: (N, 3) unit normals of the surface in the current camera's axes,
     zeros where unknown; for the cost point_to_plane.
-prior: a pair of a (4, 4) cur_from_prev and its (6, 6) covariance; for the cost
-    motion_prior.
+prior: a pair of a (4, 4) cur_from_prev and its (6, 6) covariance, zero if nothing
+    is known, as of a failed estimate; for the cost motion_prior.
 threads: for tens of thousands of matches; the result does not depend on it.
 
 Bad data is reported by the status of the estimate, never by an exception;

@@ -10,8 +10,8 @@
 #include "core/factors/sqrt_information.h"
 #include "core/util/input_error.h"
 
-// The measurements of factors from arguments of Python. All throw InputError
-// with the name of the argument.
+// Measurements from arguments of Python, mostly of factors. All throw
+// InputError with the name of the argument.
 
 namespace rgbd_pose {
 
@@ -48,12 +48,11 @@ inline double Finite(double value, const std::string& name) {
   return value;
 }
 
-// S with S^T S = covariance^-1, of an argument named `covariance`.
+// A symmetric matrix.
 template <int N>
-Eigen::Matrix<double, N, N> SqrtInformationFrom(
-    const pybind11::object& covariance) {
-  const std::string name = "covariance";
-  const NumberArray numbers(covariance, name, {N, N});
+Eigen::Matrix<double, N, N> SymmetricFrom(const pybind11::object& object,
+                                          const std::string& name) {
+  const NumberArray numbers(object, name, {N, N});
   const Eigen::Matrix<double, N, N> matrix =
       Eigen::Matrix<double, N, N>::NullaryExpr(
           [&](int i, int j) { return numbers(i, j); });
@@ -64,6 +63,15 @@ Eigen::Matrix<double, N, N> SqrtInformationFrom(
            .all()) {
     throw InputError(name + ": is not finite and symmetric");
   }
+  return matrix;
+}
+
+// S with S^T S = covariance^-1, of an argument named `covariance`.
+template <int N>
+Eigen::Matrix<double, N, N> SqrtInformationFrom(
+    const pybind11::object& covariance) {
+  const std::string name = "covariance";
+  const auto matrix = SymmetricFrom<N>(covariance, name);
   return Located(name, [&] { return SqrtInformationOfCovariance(matrix); });
 }
 

@@ -213,6 +213,21 @@ def test_a_prior_decides_what_matches_leave_open():
     np.testing.assert_allclose(estimate.cur_from_prev, turn, atol=1e-3)
 
 
+def test_a_prior_of_a_failed_estimate_says_nothing():
+    points = random_points(50)
+    failed = rgbd_pose.estimate_motion(points[:2], points[:2])
+    estimates = [
+        rgbd_pose.estimate_motion(
+            points,
+            move(motion(), points),
+            cost="bidirectional_point+motion_prior",
+            prior=prior,
+        ).cur_from_prev
+        for prior in (None, (failed.cur_from_prev, failed.covariance))
+    ]
+    np.testing.assert_array_equal(*estimates)
+
+
 def test_pieces_are_passed_on():
     prev, cur, _ = noisy_matches(300, 0.2, seed=17)
     default = rgbd_pose.estimate_motion(prev, cur, KINECT)
