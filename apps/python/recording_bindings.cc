@@ -204,6 +204,36 @@ are accessed, with the GIL released.)")
           "camera of all frames");
 }
 
+// A loop over a recording. Several threads may share it: Python's own iterator
+// of a function fails if two of them come to the end at once.
+struct FrameIterator {
+  std::shared_ptr<FrameSource> source;  // other threads may still read of it
+  std::shared_ptr<std::mutex> mutex;
+  bool is_at_end = false;
+
+  // Empty at the end.
+  std::optional<Frame> Next() {
+    const ReleasedGil no_gil;
+    std::optional<RgbdFrame> frame;
+    {
+      const std::lock_guard<std::mutex> lock(*mutex);
+      if (!is_at_end) frame = source->Next();
+      is_at_end = !frame.has_value();
+    }
+    return frame ? std::make_optional(frame->read()) : std::nullopt;
+  }
+};
+
+void BindFrameIterator(py::module_* module) {
+  py::class_<FrameIterator>(*module, "_FrameIterator")
+      .def("__iter__", [](const py::object& self) { return self; })
+      .def("__next__", [](FrameIterator* self) {
+        std::optional<Frame> frame = self->Next();
+        if (!frame.has_value()) throw py::stop_iteration();
+        return *std::move(frame);
+      });
+}
+
 void BindAnyRecording(py::module_* module) {
   py::class_<Recording> recording(*module, "Recording", R"(
 A recording of any kind that the programs read: `for frame in recording` gives
@@ -235,18 +265,8 @@ recording does not specify. Raises InputError for unreadable input.)");
                 py::arg("associations") = py::none(),
                 py::arg("depth_camera") = "", py::arg("depth_scale") = 0.0,
                 py::arg("topics") = py::tuple(), py::arg("imu") = py::none());
-  recording.def("__iter__", [](Recording* self) -> py::iterator {
-    const py::cpp_function next(
-        [source = self->Begin(), mutex = self->mutex()] {
-          const ReleasedGil no_gil;
-          std::optional<RgbdFrame> frame;
-          {
-            const std::lock_guard<std::mutex> lock(*mutex);
-            frame = source->Next();
-          }
-          return frame ? std::make_optional(frame->read()) : std::nullopt;
-        });
-    return py::module_::import("builtins").attr("iter")(next, py::none());
+  recording.def("__iter__", [](Recording* self) {
+    return FrameIterator{self->Begin(), self->mutex()};
   });
   recording.def("__repr__", &RecordingInWords);
   recording.def("__len__", &LengthOf);
@@ -296,6 +316,7 @@ recording does not specify. Raises InputError for unreadable input.)");
 void BindRecording(py::module_* module) {
   BindFrame(module);
   BindTumDataset(module);
+  BindFrameIterator(module);
   BindAnyRecording(module);
 }
 

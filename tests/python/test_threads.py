@@ -127,6 +127,30 @@ def test_calls_of_one_odometry_wait_for_each_other(sequence, camera):
     assert all(f.status == "ok" for f in frames)
 
 
+def test_threads_share_a_loop_over_a_recording(sequence):
+    errors = []
+
+    def work(frames, seen):
+        try:
+            seen.extend(frame.index for frame in frames)
+        except BaseException as error:
+            errors.append(error)
+
+    for _ in range(5):
+        frames = iter(rgbd_pose.Recording(sequence))
+        seen = []
+        threads = [
+            threading.Thread(target=work, args=(frames, seen)) for _ in range(4)
+        ]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert not errors
+        assert sorted(seen) == list(range(8))
+        assert next(frames, None) is None
+
+
 def test_daemon_threads_do_not_abort_the_end():
     # Python terminates threads that request the GIL after Python's end.
     program = """
