@@ -74,7 +74,8 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   if (array.ndim() == 3 && array.shape(2) == 1) {
     array = array.attr("squeeze")(2);
   }
-  const bool is_raw = py::isinstance<py::array_t<uint16_t>>(array);
+  // Of any byte order: that of PGM files is big-endian.
+  const bool is_raw = array.dtype().kind() == 'u' && array.itemsize() == 2;
   if (Channels(array, camera.camera) != 1 || array.ndim() != 2 ||
       !(is_raw || array.dtype().kind() == 'f')) {
     throw WrongImage("depth", array, camera.camera,
@@ -166,6 +167,9 @@ void SharedRun::Add(Frame frame, std::optional<double> timestamp,
     throw InputError("timestamp: " + std::to_string(frame.timestamp) +
                      " s is not after that of the previous frame; frames must "
                      "be in the order of time");
+  }
+  if (!std::isfinite(frame.depth_delay)) {
+    throw InputError("depth_delay: is not a finite number of seconds");
   }
   run_.Add(PreparedFrame(frame), guess);
   if (view_ == nullptr) return;

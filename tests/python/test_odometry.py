@@ -239,6 +239,9 @@ def test_time_stamps(dataset, camera):
     ):
         with pytest.raises(rgbd_pose.InputError, match=f"timestamp: .*{words}"):
             odometry.track(f.gray, f.depth, bad)
+    for bad in (np.nan, np.inf):
+        with pytest.raises(rgbd_pose.InputError, match="depth_delay: is not a"):
+            odometry.track(f.gray, f.depth, 6.0, depth_delay=bad)
     assert odometry.track(f.gray, f.depth, 6.0).index == 3
     with pytest.raises(rgbd_pose.InputError, match="not a finite"):
         rgbd_pose.Odometry(camera).track(f.gray, f.depth, np.nan)
@@ -253,6 +256,16 @@ def test_depth_of_one_channel(dataset, camera):
         b = deep.track(f.gray[:, :, None], f.depth[:, :, None])
         assert np.array_equal(a.world_from_cam, b.world_from_cam)
         assert b.matches == a.matches
+
+
+def test_depth_of_any_byte_order(dataset, camera):
+    poses = []
+    for dtype in ("<u2", ">u2"):
+        odometry = rgbd_pose.Odometry(camera)
+        for frame in (dataset[0], dataset[4]):
+            tracked = odometry.track(frame.gray, frame.depth.astype(dtype))
+        poses.append(tracked.world_from_cam)
+    np.testing.assert_array_equal(*poses)
 
 
 def test_motion_guess(dataset, camera):
