@@ -58,6 +58,9 @@ WrittenExport ExportRun(const FinishedRun& run, const std::string& format,
       !(options.step.min_angle_deg >= 0.0)) {
     throw InputError("--min_distance and --min_angle must not be negative");
   }
+  if (!(options.max_depth >= 0.0)) {
+    throw InputError("--max_depth must not be negative (0: that of the run)");
+  }
   options.threads = NumThreads(options.threads);
   if (options.output.empty() && run.folder.empty()) {
     throw InputError("--output is needed; there is no folder of a run");

@@ -119,6 +119,8 @@ def test_says_what_is_wrong(run, recording, sequence, tmp_path):
         ("unknown format 'obj'", lambda: of_run(to="obj")),
         ("max_points must be 8", lambda: of_run(max_points=1)),
         ("min_angle must not be negative", lambda: of_run(min_angle=-1.0)),
+        ("max_depth must not be", lambda: of_run(to="mesh", max_depth=-1)),
+        ("max_depth must not be", lambda: of_run(to="cloud", max_depth=np.nan)),
         ("is not empty", lambda: of_run(to="kitti", output=tmp_path / "full")),
         ("/none, does not exist", lambda: of_run(to="cloud", dataset="/none")),
         ("no measured motions", lambda: of_path(to="g2o")),
