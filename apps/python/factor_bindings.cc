@@ -163,8 +163,9 @@ sigma: standard deviation of the angle between the two, rad.)",
             Positive(linear_density, "linear_density")};
       },
       R"(
-A body that keeps its velocity but for white noise of its acceleration; over
-pose a, twist a, pose b, twist b.
+A body that keeps its angular velocity about its own axes, and its linear velocity
+in the world, but for white noise of its accelerations; over pose a, twist a,
+pose b, twist b.
 
 seconds: from a to b, s.
 angular_density: of the noise, rad/s^2/sqrt(Hz): about how much the angular
