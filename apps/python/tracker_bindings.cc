@@ -128,10 +128,14 @@ void SharedRun::UseImu(const ImuSensor& sensor) {
     throw InputError("use_imu: call it before the first frame");
   }
   run_.UseImu(sensor);
+  uses_imu_ = true;
 }
 
 void SharedRun::AddImu(const std::vector<ImuSample>& samples) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (!uses_imu_) {
+    throw InputError("add_imu: call use_imu first, which says how to use them");
+  }
   run_.AddImu(samples);
 }
 

@@ -57,7 +57,7 @@ class SharedRun {
 
   // See Odometry::UseImu. Throws InputError after the first frame.
   void UseImu(const ImuSensor& sensor);
-  // See Odometry::AddImu.
+  // See Odometry::AddImu. Throws InputError before UseImu.
   void AddImu(const std::vector<ImuSample>& samples);
 
   // Opens a page that shows the run, in place of an earlier one, and returns
@@ -79,6 +79,7 @@ class SharedRun {
   const RgbdCamera camera_;
   std::mutex mutex_;
   SequenceRun run_;
+  bool uses_imu_ = false;
   std::unique_ptr<LiveView> view_;  // null: no page
 };
 
@@ -187,7 +188,8 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
       },
       "Adds samples of that sensor, (N, 7) as Recording.imu() has them, in "
       "order. Those up\nto the last row of a frame are needed before it is "
-      "tracked.",
+      "tracked. One that is not finite\nor not later than the one before is "
+      "left out. Raises InputError before use_imu.",
       py::arg("samples"));
   type.def_property_readonly("trajectory", get, trajectory_help);
   type.def(

@@ -49,6 +49,8 @@ def test_refuses_what_it_cannot_use(shaken):
         odometry.use_imu(np.eye(3))
     with pytest.raises(rgbd_pose.InputError, match="samples"):
         odometry.add_imu(np.zeros((5, 6)))
+    with pytest.raises(rgbd_pose.InputError, match="add_imu: call use_imu"):
+        odometry.add_imu(recording.imu())
     frame = next(iter(recording))
     odometry.track(frame.gray, frame.depth, frame.timestamp)
     with pytest.raises(rgbd_pose.InputError, match="before the first frame"):
