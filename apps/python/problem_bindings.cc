@@ -179,8 +179,9 @@ SolverSummary.
 The arrays are read at the start and written at the end, if any step could be
 taken; quaternions then have length 1. 'ok' means that no small step lowers the
 cost, also where factors or losses do not pull: compare final_cost with half the
-number of residuals, which it hardly exceeds if sigmas are right. Raises InputError for blocks that are not
-finite. The GIL is released; Ctrl-C ends it and leaves the arrays as they were.)");
+number of residuals, which it hardly exceeds if sigmas are right. Raises
+InputError for blocks that are not finite. The GIL is released; Ctrl-C ends it
+and leaves the arrays as they were.)");
 }
 
 }  // namespace rgbd_pose

@@ -287,7 +287,7 @@ recording does not specify. Raises InputError for unreadable input.)");
   property(
       "timestamps",
       [](const Recording& self) {
-        return py::array(py::cast(self.timestamps()));
+        return ReadOnly(py::array(py::cast(self.timestamps())));
       },
       "(N,) of all frames, s; empty if they are not known in advance");
   recording.def(

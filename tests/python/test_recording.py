@@ -25,6 +25,8 @@ def test_brings_its_camera_and_its_path(sequence, camera, whole):
     np.testing.assert_array_equal(
         recording.timestamps, [frame.timestamp for frame in whole]
     )
+    for array in (recording.timestamps, stamps, poses, whole[0].gray):
+        assert not array.flags.writeable
 
 
 def test_gives_the_frames_of_a_tum_folder(sequence, camera, whole):
