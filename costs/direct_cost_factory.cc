@@ -17,8 +17,10 @@ std::string DirectOptions::Check() const {
   if (!(min_depth > 0.0 && min_depth < max_depth && max_depth <= 1000.0)) {
     return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
-  if (num_levels < 1 || finest_level < 0) {
-    return "num_levels must be positive and finest_level not negative";
+  // Points are kept for each level; images have far fewer.
+  constexpr int kMaxLevels = 16;
+  if (num_levels < 1 || num_levels > kMaxLevels || finest_level < 0) {
+    return "num_levels must be 1 to 16 and finest_level not negative";
   }
   if (!(information_factor >= 0.0 && information_factor <= 1.0)) {
     return "information_factor must be 0 to 1";

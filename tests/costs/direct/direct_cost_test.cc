@@ -328,6 +328,7 @@ TEST(DirectOptionsTest, CheckSaysWhatIsWrong) {
   expect([](auto* o) { o->max_depth = 0.2; }, "depth");
   expect([](auto* o) { o->max_depth = kNaN; }, "depth");
   expect([](auto* o) { o->num_levels = 0; }, "level");
+  expect([](auto* o) { o->num_levels = 17; }, "num_levels must be 1 to 16");
   expect([](auto* o) { o->finest_level = -1; }, "level");
   expect([](auto* o) { o->information_factor = -1.0; }, "information_factor");
   expect([](auto* o) { o->information_factor = kNaN; }, "information_factor");
