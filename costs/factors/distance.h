@@ -35,7 +35,8 @@ struct DistanceFactor {
     const Eigen::Matrix<T, 3, 1> apart = a.p + a.q * in_a.template cast<T>() -
                                          b.p - b.q * in_b.template cast<T>();
     const T squared = apart.squaredNorm();
-    const T length = squared > T(0.0) ? sqrt(squared) : T(0.0);
+    // The root has no derivative at 0. NaN stays, so that a solver notices it.
+    const T length = squared == T(0.0) ? T(0.0) : sqrt(squared);
     r[0] = (length - T(metres)) / T(sigma);
     return true;
   }

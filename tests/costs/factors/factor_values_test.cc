@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "core/factors/common_direction.h"
@@ -170,6 +171,20 @@ TEST(FactorValuesTest, DistanceWithoutADirectionIsFinite) {
     EXPECT_TRUE(function->Evaluate(blocks, &r, jacobians));
     EXPECT_EQ(r, -factor.metres / factor.sigma);
     for (const PoseVector& block : J) EXPECT_TRUE(block.isZero(0.0));
+  }
+}
+
+// Without a Jacobian, too: a step to such a pose is not accepted as one where
+// both points are at one place.
+TEST(FactorValuesTest, DistanceOfAPoseThatIsNotFiniteIsNone) {
+  const DistanceFactor factor;
+  const PoseOf<double> a = PoseFrom(Rigid3d());
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity()}) {
+    PoseOf<double> b = a;
+    b.p.x() = bad;
+    EXPECT_FALSE(std::isfinite(ResidualOf(factor, a, b)[0]));
+    EXPECT_FALSE(std::isfinite(ResidualOf(factor, b, a)[0]));
   }
 }
 
