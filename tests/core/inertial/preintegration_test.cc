@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "core/factors/sampler.h"
 #include "core/geometry/rigid3.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/imu_path.h"
@@ -74,9 +76,8 @@ TEST(PreintegrationTest, TakesTheBiasOff) {
   EXPECT_EQ(with.bias, kBias);
 }
 
-// Coarse samples of a fast motion, where approximate derivatives would differ.
-TEST(PreintegrationTest, DerivativesByTheBiasAreThoseOfTheSum) {
-  const auto samples = ImuPath().Samples(0.0, 0.5, 40.0);
+// Compares the derivatives with differences of the sum itself.
+void ExpectDerivativesOfTheSum(const std::vector<ImuSample>& samples) {
   const auto motion = Preintegrate(samples, kBias, ImuNoise());
   constexpr double kStep = 1e-4;
   for (int k = 0; k < 6; ++k) {
@@ -89,6 +90,24 @@ TEST(PreintegrationTest, DerivativesByTheBiasAreThoseOfTheSum) {
         (2.0 * kStep);
     EXPECT_LT((by_difference - motion.by_bias.col(k)).norm(), 1e-8) << k;
   }
+}
+
+// Coarse samples of a fast motion, where approximate derivatives would differ.
+TEST(PreintegrationTest, DerivativesByTheBiasAreThoseOfTheSum) {
+  ExpectDerivativesOfTheSum(ImuPath().Samples(0.0, 0.5, 40.0));
+}
+
+// Half a radian and more between two samples, where series for small angles
+// would differ.
+TEST(PreintegrationTest, DerivativesByTheBiasHoldForLargeTurns) {
+  FactorSampler random(1);
+  std::vector<ImuSample> samples;
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::Vector3d gyro =
+        Eigen::Vector3d(12.0, -9.0, 6.0) + random.Vector<3>(2.0);
+    samples.push_back({0.05 * k, gyro, random.Vector<3>(10.0)});
+  }
+  ExpectDerivativesOfTheSum(samples);
 }
 
 // A bias that is half as far off leaves a quarter of the error.
