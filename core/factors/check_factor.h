@@ -3,6 +3,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -70,13 +71,51 @@ constexpr bool kHasNear = false;
 template <typename Factor>
 constexpr bool kHasNear<Factor, std::void_t<decltype(&Factor::Near)>> = true;
 
+// A factor whose derivatives are NaN until its Jacobian fills them in: left as
+// they are in memory, forgotten ones may look right.
+template <typename Factor>
+struct WithUnsetDerivatives {
+  using Blocks = typename Factor::Blocks;
+  static constexpr int kRows = Factor::kRows;
+
+  Factor factor;
+
+  template <typename... Arguments>
+  bool Residual(const Arguments&... arguments) const {
+    return factor.Residual(arguments...);
+  }
+  template <typename... Arguments>
+  bool Jacobian(const Arguments&... arguments) const {
+    (Unset(arguments), ...);
+    return factor.Jacobian(arguments...);
+  }
+
+ private:
+  template <typename State>
+  static void Unset(const State& /*state or residual*/) {}
+  template <int kBlockRows, int kTangent>
+  static void Unset(Eigen::Matrix<double, kBlockRows, kTangent>* by_block) {
+    by_block->setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+};
+
+// MakeFactor for a check.
+template <typename Factor>
+ceres::CostFunction* MakeFactorToCheck(const Factor& factor) {
+  if constexpr (kHasJacobian<Factor>) {
+    return new AnalyticFunction<WithUnsetDerivatives<Factor>>({factor});
+  } else {
+    return MakeFactor(factor);
+  }
+}
+
 }  // namespace factors
 
 // A factor of any type, as its check sees it.
 struct CheckableFactor {
   std::string name;                                  // its kName
   std::vector<factors::BlockKind> kinds;             // of its blocks
-  std::unique_ptr<ceres::CostFunction> by_hand;      // of MakeFactor
+  std::unique_ptr<ceres::CostFunction> by_hand;      // as of MakeFactor
   std::unique_ptr<ceres::CostFunction> by_autodiff;  // of MakeAutodiffFactor
   std::vector<std::vector<double>> near;             // see CheckFactorOptions
 };
@@ -87,7 +126,7 @@ CheckableFactor MakeCheckable(const Factor& factor) {
   CheckableFactor made;
   made.name = Factor::kName;
   made.kinds = factors::KindsOf(typename Factor::Blocks());
-  made.by_hand.reset(MakeFactor(factor));
+  made.by_hand.reset(factors::MakeFactorToCheck(factor));
   made.by_autodiff.reset(MakeAutodiffFactor(factor));
   if constexpr (factors::kHasNear<Factor>) made.near = Factor::Near();
   return made;
@@ -96,7 +135,8 @@ CheckableFactor MakeCheckable(const Factor& factor) {
 // Compares the hand-written Jacobian of a factor with automatic differentiation
 // and with central differences, and Residual with what Jacobian fills in.
 // Empty if they agree at all states. Otherwise a line for each wrong entry says
-// its row, block and direction, and the values where they differ most.
+// its row, block and direction, and the values where they differ most. Where
+// Jacobian leaves an entry as it is, all of its row and block are NaN.
 std::string CheckFactor(const CheckableFactor& factor,
                         const CheckFactorOptions& options = {});
 template <typename Factor>

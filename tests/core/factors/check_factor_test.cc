@@ -18,7 +18,14 @@ using testing::Not;
 using testing::StartsWith;
 
 // The measured position of a pose, with one of several mistakes.
-enum class Mistake { kNone, kSign, kResidual, kRefuses, kDroppedDerivative };
+enum class Mistake {
+  kNone,
+  kSign,
+  kResidual,
+  kRefuses,
+  kDroppedDerivative,
+  kForgotten,
+};
 
 template <Mistake mistake>
 struct PositionFactor {
@@ -51,7 +58,7 @@ struct PositionFactor {
     Residual(shift, pose, r);
     by_shift->setIdentity();
     if (mistake == Mistake::kDroppedDerivative) (*by_shift)(1, 1) = 0.0;
-    by_pose->setZero();
+    if (mistake != Mistake::kForgotten) by_pose->setZero();
     by_pose->rightCols<3>().setIdentity();
     if (mistake == Mistake::kSign) (*by_pose)(2, 5) = -1.0;
     if (mistake == Mistake::kResidual) r[0] *= 2.0;
@@ -78,6 +85,15 @@ TEST(CheckFactorTest, ComparesTheResidualsOfBothFunctions) {
 TEST(CheckFactorTest, SaysThatJacobianRefuses) {
   EXPECT_THAT(CheckFactor(PositionFactor<Mistake::kRefuses>()),
               StartsWith("position: Jacobian returns false at 100 states"));
+}
+
+// Memory that nobody has written to is often zero, as most derivatives are.
+TEST(CheckFactorTest, FindsWhatJacobianDoesNotFillIn) {
+  const std::string said = CheckFactor(PositionFactor<Mistake::kForgotten>());
+  EXPECT_THAT(said,
+              StartsWith("position: row 0, block 1 (pose), rotation about x: "
+                         "nan by hand, 0 by autodiff"));
+  EXPECT_THAT(said, Not(HasSubstr("block 0")));
 }
 
 // Jets and the hand agree, and both are wrong.
