@@ -24,18 +24,19 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path) {
 }
 
 GrowingFile::~GrowingFile() {
-  if (file_ != nullptr) std::fclose(file_);
-  if (!is_published_) std::remove(TemporaryPath(path_).c_str());
+  if (!is_published_ && failure_.empty()) Remove();
 }
 
 void GrowingFile::Append(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size() ||
+  if (file_ == nullptr ||
+      std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size() ||
       std::fflush(file_) != 0) {
     Fail();
   }
 }
 
 void GrowingFile::Publish() {
+  if (file_ == nullptr) Fail();
   const bool is_closed = std::fclose(file_) == 0;
   file_ = nullptr;
   if (!is_closed) Fail();
@@ -43,8 +44,18 @@ void GrowingFile::Publish() {
   is_published_ = true;
 }
 
-void GrowingFile::Fail() const {
-  throw InputError(path_ + ": writing failed " + LastFailure());
+void GrowingFile::Fail() {
+  if (failure_.empty()) {
+    failure_ = path_ + ": writing failed " + LastFailure();
+  }
+  Remove();
+  throw InputError(failure_);
+}
+
+void GrowingFile::Remove() {
+  if (file_ != nullptr) std::fclose(file_);
+  file_ = nullptr;
+  std::remove(TemporaryPath(path_).c_str());
 }
 
 }  // namespace rgbd_pose

@@ -19,16 +19,19 @@ class GrowingFile {
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  // Both throw InputError if writing fails (disk full).
+  // Both throw InputError if writing fails (disk full). Then the file is
+  // removed at once, so that others find space, and later calls fail, too.
   void Append(std::string_view bytes);
   // Call once, at the end: gives the complete file its name.
   void Publish();
 
  private:
-  [[noreturn]] void Fail() const;
+  [[noreturn]] void Fail();
+  void Remove();
 
   const std::string path_;
   std::FILE* file_ = nullptr;  // null: closed
+  std::string failure_;        // why nothing more is written
   bool is_published_ = false;
 };
 

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -72,6 +74,24 @@ TEST_F(Ros2RecordingTest, ATimeThatRosDoesNotHaveEndsTheRecordingOnly) {
   ExpectInputError([&] { recording_->Finish(); }, {"from 1970 to 2038"});
   recording_.reset();
   EXPECT_FALSE(IsPartThere());
+  EXPECT_FALSE(IsThere());
+}
+
+// A full disk: the other results of the run need the space, and are written
+// while the recording still exists.
+TEST_F(Ros2RecordingTest, AFileThatCannotGrowIsRemovedAtOnce) {
+  rlimit before;
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto previous = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small = {10000, before.rlim_max};  // bytes
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  for (int i = 0; i < 12; ++i) Add(100.0 + i / 30.0);
+  ExpectInputError([&] { recording_->Finish(); },
+                   {path_ + ": writing failed (File too large)"});
+  EXPECT_FALSE(IsPartThere());
+  EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, previous);
+  recording_.reset();
   EXPECT_FALSE(IsThere());
 }
 
