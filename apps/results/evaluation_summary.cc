@@ -48,7 +48,10 @@ std::string FormatEvaluationSummary(const EvaluationReport& report) {
             "ground truth: " + report.consistency->truth_noise.InWords() +
             ")\n";
     const Consistency& in_time = report.consistency->in_time;
-    if (10 * frames.wrong > frames.count && 2 * in_time.wrong < frames.wrong) {
+    const bool is_by_clock = 10 * frames.wrong > frames.count &&
+                             2 * in_time.wrong < frames.wrong &&
+                             in_time.count > 0;
+    if (is_by_clock) {
       text += Format(
           "  most of them by the truth's clock: with it corrected %d of %d "
           "wrong, NEES %.2f\n",

@@ -57,6 +57,17 @@ TEST(EvaluationSummaryTest, SaysThatTheClockMakesFramesWrong) {
   EXPECT_FALSE(has_reason());
 }
 
+// Where the clock was not found, for example because rotations of the truth
+// have another order of columns, no frame was judged with it.
+TEST(EvaluationSummaryTest, DoesNotBlameAClockThatWasNotFound) {
+  EvaluationReport report = SomeReport();
+  report.truth_alignment.skipped = "too short";
+  report.consistency->ok_frames = {148, 147, 30.0, 25.0};
+  report.consistency->in_time = {};
+  EXPECT_EQ(FormatEvaluationSummary(report).find("by the truth's clock"),
+            std::string::npos);
+}
+
 TEST(EvaluationSummaryTest, LeavesOutWhatWasNotFound) {
   EvaluationReport report = SomeReport();
   report.truth_alignment.skipped = "too short";
