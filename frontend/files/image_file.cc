@@ -75,8 +75,8 @@ cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
   cv::Mat gray = Decode(bytes, path, /*to_gray=*/true, color);
   if (gray.type() != CV_8UC1) {
     throw InputError(path +
-                     ": a colour image must have 8 bits per channel, this one "
-                     "has more; is it the depth image?");
+                     ": a colour image or a mask must have 8 bits per channel, "
+                     "this one has more; is it a depth image?");
   }
   return gray;
 }

@@ -102,7 +102,8 @@ TEST_F(ImageFileTest, ColourMustHaveEightBits) {
   }
   for (const int type : {CV_16UC1, CV_16UC3}) {
     const std::string path = Write("color.png", Noise(type));
-    ExpectInputError([&] { ReadGrayImageFile(path); }, {path, "8 bits"});
+    ExpectInputError([&] { ReadGrayImageFile(path); },
+                     {path, "a colour image or a mask", "8 bits"});
   }
 }
 
