@@ -233,8 +233,8 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +
                      ": has several cameras; choose that of the depth images: "
-                     "depth_camera cam1, or cam0 if depth is registered to "
-                     "colour");
+                     "give this file as camera, with depth_camera cam1, or "
+                     "cam0 if depth is registered to colour");
   }
   if (!IsOfColor(depth_camera)) {
     result.depth_camera = ReadDepthCamera(path, file, depth_camera);

@@ -31,7 +31,8 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   } else if (!settings.depth_camera.empty()) {
     throw InputError(
         "depth_camera '" + settings.depth_camera +
-        "': needs a Kalibr file with this camera; set it as camera");
+        "': needs a Kalibr file with this camera as camera (--camera), even if "
+        "it is the recording's own");
   }
   if (camera != nullptr) {
     const CameraSetup said = options.camera.value_or(CameraSetup());

@@ -61,7 +61,8 @@ TEST_F(BadInputTest, Cameras) {
           {"--camera={seq}", "{seq}: is a folder"},
           {"--depth_camera=cam1", kFile + ": has no depth camera 'cam1'"},
           {"--camera= --depth_camera=cam1",
-           "depth_camera 'cam1': needs a Kalibr file"},
+           "depth_camera 'cam1': needs a Kalibr file with this camera as "
+           "camera (--camera), even if it is the recording's own"},
       });
 }
 

@@ -344,7 +344,8 @@ TEST(DepthCameraTest, IsReadFromARig) {
   const std::string path = folder.Write("rig.yaml", kRig);
   EXPECT_FALSE(ReadCameraFile(path, "cam0").depth_camera.has_value());
   ExpectInputError([&] { ReadCameraFile(path); },
-                   {"rig.yaml: has several cameras; choose"});
+                   {"rig.yaml: has several cameras; choose",
+                    "give this file as camera, with depth_camera cam1"});
   const CameraSetup setup = ReadCameraFile(path, "cam1");
   EXPECT_EQ(setup.camera.fx, 600.5);
   EXPECT_FALSE(setup.depth_scale.has_value());
