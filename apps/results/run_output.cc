@@ -212,8 +212,7 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   }
   WarnOfInput(results, jitters_ms_);
   if (results.evaluation.has_value()) {
-    text += FormatEvaluationSummary(*results.evaluation) +
-            "all errors  in the report and in " +
+    text += FormatEvaluationSummary(*results.evaluation) + "all errors  in " +
             (folder_.staging_dir().parent_path() / "metrics.json").string() +
             "\n";
     metrics["evaluation"] = EvaluationToJson(*results.evaluation);

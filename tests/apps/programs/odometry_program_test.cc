@@ -86,8 +86,8 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   EXPECT_THAT(run.out, HasSubstr("frames/s with decoding"));
   // At most ten lines of errors, the last of which says where all are.
   const size_t errors = run.out.find("errors of 6 poses");
-  const size_t end = run.out.find("all errors  in the report and in " +
-                                  (folder_ / "run/metrics.json\n"));
+  const size_t end =
+      run.out.find("all errors  in " + (folder_ / "run/metrics.json\n"));
   ASSERT_LT(errors, end);
   ASSERT_NE(end, std::string::npos);
   EXPECT_LE(std::count(run.out.begin() + errors, run.out.begin() + end, '\n'),
