@@ -1,14 +1,13 @@
 #include "frontend/sources/frame_assembly.h"
 
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
-#include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/depth_warper.h"
+#include "frontend/sources/masks.h"
 
 namespace rgbd_pose {
 namespace {
@@ -36,19 +35,6 @@ cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
     raw = is_depth ? static_cast<uint16_t>(std::lround(value)) : 0;
   }
   return moved;
-}
-
-// The mask of a colour image: mask/NAME.png in its folder or beside that.
-// Empty: there is none.
-std::string MaskPath(const std::string& color_path) {
-  const std::filesystem::path color(color_path);
-  const std::filesystem::path name = color.stem().string() + ".png";
-  const std::filesystem::path folder = color.parent_path();
-  for (const auto& mask :
-       {folder / "mask" / name, folder / ".." / "mask" / name}) {
-    if (IsFile(mask)) return mask.lexically_normal().string();
-  }
-  return "";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/util/text_file.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/frame_source.h"
+#include "frontend/sources/masks.h"
 #include "frontend/sources/numbered_layouts.h"
 #include "frontend/sources/source_kinds.h"
 
@@ -79,10 +80,18 @@ class NumberedDataset final : public Dataset {
     return truth;
   }
   std::vector<std::string> remarks() const override {
-    if (has_times_) return {};
-    return {folder_.path.string() +
-            Format(": has no timestamps.txt: %g frames per second are assumed",
-                   kNumberedRate)};
+    std::vector<std::string> lines;
+    if (!has_times_) {
+      lines.push_back(folder_.path.string() +
+                      Format(": has no timestamps.txt: %g frames per second "
+                             "are assumed",
+                             kNumberedRate));
+    }
+    std::vector<std::string> colors;
+    for (const auto& frame : folder_.frames) colors.push_back(frame.color_path);
+    const std::string masks = MaskRemark(colors);
+    if (!masks.empty()) lines.push_back(masks);
+    return lines;
   }
   int unmatched_color() const override {
     return static_cast<int>(folder_.numbers.size() - folder_.frames.size());

@@ -11,6 +11,7 @@
 #include "frontend/files/image_file.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/image_pairing.h"
+#include "frontend/sources/masks.h"
 #include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
@@ -328,6 +329,10 @@ class TumDataset final : public Dataset {
     if (lists_.same_stamp > 0) {
       lines.push_back(SameStampRemark(folder_, lists_.same_stamp));
     }
+    std::vector<std::string> colors;
+    for (const auto& pair : lists_.pairs) colors.push_back(pair.color.path);
+    const std::string masks = MaskRemark(colors);
+    if (!masks.empty()) lines.push_back(masks);
     return lines;
   }
 

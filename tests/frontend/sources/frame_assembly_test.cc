@@ -8,6 +8,7 @@
 
 #include "core/geometry/camera.h"
 #include "frontend/files/image_file.h"
+#include "frontend/sources/masks.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
@@ -105,6 +106,17 @@ TEST_P(MaskTest, NothingIsMeasuredWhereTheMaskIsZero) {
 TEST_P(MaskTest, IsAsLargeAsTheImage) {
   WriteMask(cv::Mat(240, 320, CV_8UC1, cv::Scalar(1)));
   ExpectInputError([this] { Read(); }, {"mask/1.5.png: is 320 x 240"});
+}
+
+TEST_P(MaskTest, AFolderThatFitsNoImageIsMentioned) {
+  EXPECT_EQ(MaskRemark({color_}), "");
+  const std::filesystem::path mask = folder_ / GetParam();
+  std::filesystem::create_directories(mask.parent_path());
+  const std::string remark = mask.parent_path().string() +
+                             ": has no mask of a colour image, such as 1.5.png";
+  EXPECT_EQ(MaskRemark({color_}).substr(0, remark.size()), remark);
+  WriteMask(cv::Mat(480, 640, CV_8UC1, cv::Scalar(1)));
+  EXPECT_EQ(MaskRemark({folder_ / "seq/rgb/1.4.png", color_}), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, MaskTest,

@@ -234,6 +234,16 @@ TEST_F(NumberedDatasetTest, ReadsImagesBesideEachOther) {
   EXPECT_EQ(source->camera().camera.width, kWidth);
 }
 
+TEST_F(NumberedDatasetTest, MentionsMasksThatFitNoImage) {
+  WriteSevenScenes();
+  WriteText("mask/0.png", "");
+  EXPECT_NE(OpenSource("auto", WithCamera())
+                ->remarks()
+                .back()
+                .find("has no mask of a colour image"),
+            std::string::npos);
+}
+
 TEST_F(NumberedDatasetTest, TakesTimesWhereTheyLie) {
   WriteSevenScenes();
   EXPECT_NE(OpenSource("auto", WithCamera())

@@ -130,6 +130,14 @@ TEST_F(TumDatasetTest, TellsAssociatedImagesApartByLookingAtThem) {
   EXPECT_EQ(dataset->Read(0).depth.at<uint16_t>(3, 3), 1000);
 }
 
+TEST_F(TumDatasetTest, MentionsMasksThatFitNoImage) {
+  folder_.Write("mask/0.jpg", "");
+  const std::vector<std::string> remarks = OpenTum(options_)->remarks();
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_NE(remarks[0].find("has no mask of a colour image, such as 0.png"),
+            std::string::npos);
+}
+
 TEST_F(TumDatasetTest, ReadsFromSeveralThreads) {
   const auto dataset = OpenTum(options_);
   std::vector<std::thread> threads(4);
