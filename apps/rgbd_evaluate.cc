@@ -95,6 +95,14 @@ TruthNoise NoiseOfTruth() {
   return noise;
 }
 
+// Throws InputError if --aligned would replace a trajectory that is read.
+void RequireNewAligned(const std::string& input) {
+  std::error_code error;
+  if (!std::filesystem::equivalent(FLAGS_aligned, input, error)) return;
+  throw InputError("--aligned=" + FLAGS_aligned + ": would replace " + input +
+                   ", which is read; choose another file");
+}
+
 int Main() {
   const std::filesystem::path run = FLAGS_run;
   if (!FLAGS_run.empty() && !FLAGS_estimate.empty()) {
@@ -105,10 +113,13 @@ int Main() {
   }
   if (FLAGS_run.empty()) RequireFlag("estimate", FLAGS_estimate);
   RequireFlag("groundtruth", FLAGS_groundtruth);
+  const std::string estimate_file =
+      FLAGS_run.empty() ? FLAGS_estimate : (run / "trajectory.txt").string();
+  for (const std::string& input : {estimate_file, FLAGS_groundtruth}) {
+    RequireNewAligned(input);
+  }
   std::vector<std::string> remarks;
-  Trajectory estimate = ReadTrajectory(
-      FLAGS_run.empty() ? FLAGS_estimate : (run / "trajectory.txt").string(),
-      &remarks);
+  Trajectory estimate = ReadTrajectory(estimate_file, &remarks);
   const Trajectory truth = ReadTrajectory(FLAGS_groundtruth, &remarks);
   Warn(remarks);
   const TruthNoise noise = NoiseOfTruth();

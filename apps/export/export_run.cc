@@ -69,6 +69,7 @@ WrittenExport ExportRun(const FinishedRun& run, const std::string& format,
     options.output =
         (std::filesystem::path(run.folder) / row.default_output).string();
   }
+  RequireOutside("output", options.output, run.sequence.dataset);
   std::string summary = row.write(run, options);
   return {options.output, std::move(summary)};
 }

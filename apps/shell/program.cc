@@ -278,7 +278,11 @@ std::string WithHome(const std::string& text) {
 void RequireOutside(const std::string& flag, const std::string& folder,
                     const std::string& recording) {
   std::error_code error;
-  if (!std::filesystem::is_directory(recording, error)) return;
+  if (!std::filesystem::is_directory(recording, error)) {
+    if (!std::filesystem::equivalent(folder, recording, error)) return;
+    throw InputError("--" + flag + "=" + folder +
+                     ": is the recording itself; choose another name");
+  }
   const auto below = std::filesystem::weakly_canonical(folder, error)
                          .lexically_relative(std::filesystem::weakly_canonical(
                              recording, error));

@@ -85,8 +85,8 @@ void RequireFlag(const std::string& name, const std::string& value);
 // there is no home folder.
 std::string WithHome(const std::string& text);
 
-// Throws InputError if the folder of a flag is that of a recording or below it:
-// files of a run would be taken for those of the recording.
+// Throws InputError if the folder or file of a flag is a recording or below it:
+// it would replace files of the recording, or be taken for one of them.
 void RequireOutside(const std::string& flag, const std::string& folder,
                     const std::string& recording);
 

@@ -45,6 +45,10 @@ TEST_F(BadInputTest, Evaluate) {
            "{seq}/none/trajectory.txt: cannot be opened"},
           {"--estimate={seq}", "{seq}: is a folder"},
           {"--groundtruth={seq}/none.txt", "{seq}/none.txt: cannot be opened"},
+          {"--aligned={seq}/estimate.txt",
+           "would replace {seq}/estimate.txt, which is read; choose another"},
+          {"--aligned={seq}/groundtruth.txt",
+           "would replace {seq}/groundtruth.txt, which is read"},
           {"--aligned={seq}/none/a.txt",
            "{seq}/none/a.txt: cannot be written (No such file or directory)"},
       },
@@ -251,12 +255,15 @@ TEST_F(BadInputTest, Export) {
            "--voxel or --max_depth: depth limits must satisfy"},
           {"--min_angle=-1", "must not be negative"},
           {"--max_points=1", "--max_points must be 8 or more"},
-          {"--output={seq}", "{seq} is not empty; use --overwrite to replace"},
-          {"--output={seq} --overwrite", "{seq} contains other files"},
-          {"--output={seq}/rgb.txt",
-           "{seq}/rgb.txt is a file; a folder is needed"},
+          {"--output={dir}", "{dir} is not empty; use --overwrite to replace"},
+          {"--output={dir} --overwrite", "{dir} contains other files"},
+          {"--output={dir}/mine", "{dir}/mine is a file; a folder is needed"},
+          {"--to=tum --output={seq}/rgb.txt",
+           "--output={seq}/rgb.txt: is in the recording's own folder {seq}"},
+          {"--to=ros2 --dataset={dir}/mine --output={dir}/mine",
+           "--output={dir}/mine: is the recording itself"},
       },
-      LeaveRun);
+      RunAnd([](const Seq& s) { s.Write("../mine", "mine"); }));
   ExpectEach(
       kExport,
       {
