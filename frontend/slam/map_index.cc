@@ -157,8 +157,10 @@ std::string_view Unseal(std::string_view text, const std::string& path) {
     throw InputError(path + ": is not a map of rgbd_slam");
   }
   const size_t line_end = std::min(text.find('\n'), text.size());
-  const std::string_view version =
+  std::string_view version =
       text.substr(kMagic.size(), line_end - kMagic.size());
+  // Windows line ends are an edit, which the checksum shows.
+  if (!version.empty() && version.back() == '\r') version.remove_suffix(1);
   if (version != kVersion) {
     constexpr size_t kShown = 20;  // the line of a damaged file may not end
     throw InputError(path + ": has format version " +

@@ -180,6 +180,13 @@ TEST_F(MapFolderTest, RefusesANewerVersion) {
                             "reads version 1 only; use a newer program"});
 }
 
+// An editor or a checkout on Windows may have changed them.
+TEST_F(MapFolderTest, OtherLineEndsAreAnEditNotAVersion) {
+  const std::string text = "rgbd_pose_map 1\r\n";
+  folder_.Write("maps/kitchen/map.txt", text + "checksum 0\r\n");
+  ExpectLoadRefused({map_ + "/map.txt: is damaged or edited"});
+}
+
 TEST_F(MapFolderTest, RefusesAChangedByteOfTheIndex) {
   SaveMap(map_, NoiseMap(2, 0));
   const std::string text = ReadTextFile(map_ + "/map.txt");
