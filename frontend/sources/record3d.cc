@@ -45,17 +45,24 @@ class Metadata {
     return camera;
   }
 
-  // Frames with both images, in order of time.
-  std::vector<Record3dFrame> ReadFrames() const {
-    const YAML::Node times = file_.node()["frameTimestamps"];
+  // Frames with both images, in order of time. Counts the colour images that
+  // have no depth image.
+  std::vector<Record3dFrame> ReadFrames(int* unmatched_color) const {
+    const YAML::Node times = List("frameTimestamps");
     const double rate = file_.NumberOr("fps", 60.0);
     if (!(rate > 0.0)) file_.Fail("fps", "must be positive");
     std::vector<Record3dFrame> frames;
-    for (size_t i = 0; PathExists(File("rgb", i, ".jpg")); ++i) {
+    // Images may be missing in the middle, too.
+    for (size_t i = 0; i < times.size() || PathExists(File("rgb", i, ".jpg"));
+         ++i) {
       Record3dFrame frame = {static_cast<double>(i) / rate,
                              File("rgb", i, ".jpg"), File("depth", i, ".exr")};
       if (i < times.size()) frame.timestamp = NumberAt(times[i]);
-      if (!PathExists(frame.depth_path)) continue;
+      if (!PathExists(frame.color_path)) continue;
+      if (!PathExists(frame.depth_path)) {
+        ++*unmatched_color;
+        continue;
+      }
       if (!frames.empty() && frame.timestamp <= frames.back().timestamp) {
         throw InputError(path_ + Format(": frameTimestamps: the time of image "
                                         "%zu is not after the previous one",
@@ -72,7 +79,7 @@ class Metadata {
 
   // The path that ARKit estimated. Its camera axes are x right, y up, z back.
   Trajectory ReadPath(const std::vector<Record3dFrame>& frames) const {
-    const YAML::Node poses = file_.node()["poses"];
+    const YAML::Node poses = List("poses");
     const Rigid3d arkit_from_cam =
         Rigid3d::FromRotationVector({M_PI, 0.0, 0.0}, {0.0, 0.0, 0.0});
     Trajectory path;
@@ -96,6 +103,12 @@ class Metadata {
     return (folder_ / folder / (std::to_string(i) + type)).string();
   }
 
+  // The list of a key; an empty one if there is none.
+  YAML::Node List(const std::string& key) const {
+    if (!file_.Has(key) || !file_.node()[key].IsSequence()) return {};
+    return file_.node()[key];
+  }
+
   double NumberAt(const YAML::Node& node) const {
     return ParseNumber(node.Scalar(), path_, node.Mark().line + 1, "number");
   }
@@ -116,6 +129,7 @@ class Record3d final : public Dataset {
   }
   const RgbdCamera& camera() const override { return assembly_.camera(); }
   Trajectory ground_truth() const override { return path_; }
+  int unmatched_color() const override { return unmatched_color_; }
 
   Frame Read(int index) const override {
     const Record3dFrame& files = frames_[index];
@@ -139,7 +153,7 @@ class Record3d final : public Dataset {
 
  private:
   Record3d(const Metadata& metadata, const SourceOptions& options)
-      : frames_(metadata.ReadFrames()),
+      : frames_(metadata.ReadFrames(&unmatched_color_)),
         path_(metadata.ReadPath(frames_)),
         full_(metadata.ReadCamera()),
         camera_(ScaledTo(full_, SizeOf(options))),
@@ -161,6 +175,7 @@ class Record3d final : public Dataset {
     return FrameAssembly(ChooseCamera(options, own), options.keep_color);
   }
 
+  int unmatched_color_ = 0;
   std::vector<Record3dFrame> frames_;
   Trajectory path_;
   Camera full_;    // of the colour images as they are

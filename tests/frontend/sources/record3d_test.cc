@@ -99,6 +99,13 @@ TEST_F(Record3dTest, HasThePathOfArKit) {
 
 TEST_F(Record3dTest, LeavesOutWhatHasNoDepth) {
   fs::remove(folder_ / "depth/1.exr");
+  const auto source = OpenSource("auto", options_);
+  EXPECT_EQ(source->timestamps(), (std::vector<double>{0.0, 0.3}));
+  EXPECT_EQ(source->unmatched_color(), 1);
+}
+
+TEST_F(Record3dTest, DoesNotEndWhereAnImageIsMissing) {
+  fs::remove(folder_ / "rgb/1.jpg");
   EXPECT_EQ(OpenSource("auto", options_)->timestamps(),
             (std::vector<double>{0.0, 0.3}));
 }
@@ -110,6 +117,9 @@ TEST_F(Record3dTest, RefusesWhatIsDamaged) {
   WriteMetadata("[0, soon, 1]");
   ExpectInputError([this] { OpenSource("auto", options_); },
                    {"metadata.json:3: 'soon' is not a finite number"});
+  folder_.Write("metadata.json", "{}");
+  ExpectInputError([this] { OpenSource("auto", options_); },
+                   {"metadata.json", "K is missing"});
   WriteMetadata("[0, 0.1, 0.3]");
   folder_.Write("depth/0.exr", "no image");
   const auto source = OpenSource("auto", options_);
