@@ -77,7 +77,13 @@ std::string ReadTextFile(const std::string& path) {
 }
 
 std::vector<TextLine> ReadTextTable(const std::string& path) {
-  return SplitTextTable(ReadTextFile(path));
+  const std::string content = ReadTextFile(path);
+  // Tools of Windows write it, such as PowerShell's redirection.
+  const std::string start = content.substr(0, 2);
+  if (start == "\xFF\xFE" || start == "\xFE\xFF") {
+    throw InputError(path + ": is text in UTF-16; save it as UTF-8");
+  }
+  return SplitTextTable(content);
 }
 
 std::vector<TextLine> SplitTextTable(std::string_view content) {

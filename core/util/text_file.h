@@ -16,7 +16,7 @@ struct TextLine {
 
 // The lines of a file with columns separated by white space or commas, without
 // comments ('#' to the end of the line), empty lines, carriage returns and a
-// byte order mark. Throws InputError if it cannot be read.
+// byte order mark. Throws InputError if it cannot be read, or is in UTF-16.
 std::vector<TextLine> ReadTextTable(const std::string& path);
 
 // The same for the content of a file.

@@ -45,6 +45,15 @@ TEST(TextFileTest, ReadsAnEmptyFileAsNoLines) {
   EXPECT_TRUE(ReadTextTable(folder.Write("empty.txt", "")).empty());
 }
 
+TEST(TextFileTest, RefusesTablesInUtf16) {
+  const TempFolder folder;
+  for (const char* start : {"\xFF\xFE", "\xFE\xFF"}) {
+    const std::string path = folder.Write("rgb.txt", start);
+    ExpectInputError([&] { ReadTextTable(path); },
+                     {path, "is text in UTF-16; save it as UTF-8"});
+  }
+}
+
 TEST(TextFileTest, NamesTheFileItCannotRead) {
   const TempFolder folder;
   ExpectInputError([&] { ReadTextTable(folder / "missing.txt"); },
