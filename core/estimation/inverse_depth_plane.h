@@ -40,17 +40,16 @@ class InverseDepthGrid {
     sum_by_row_ += row * inverse_depth;
   }
 
-  // Returns nothing if more than a third of the depths are missing: that is
-  // rather the edge of an object than a surface with gaps.
-  std::optional<InverseDepthPlane> Fit() const {
+  // Returns nothing if fewer than `min_count` pixels have a depth; that must be
+  // more than fit into one line.
+  std::optional<InverseDepthPlane> Fit(int min_count) const {
     constexpr int kAll = kSide * kSide;
-    if (3 * count_ < 2 * kAll) return std::nullopt;
+    if (count_ < min_count) return std::nullopt;
     if (count_ == kAll) {
       const double squares = column_squares_;
       return InverseDepthPlane{
           sum_ / kAll, {sum_by_column_ / squares, sum_by_row_ / squares}, 1.0};
     }
-    // So many pixels are never in one line.
     Eigen::Matrix3d hessian;
     hessian << count_, columns_, rows_,        //
         columns_, column_squares_, products_,  //

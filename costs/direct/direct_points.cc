@@ -22,11 +22,14 @@ int CellSize(double pixels, int max_points) {
 constexpr int kSlopeStep = 3;
 
 // The plane through the 3 x 3 depths around a pixel of the full resolution.
-// Nothing at holes, and where they do not belong to one surface with a slope of
-// up to about 75 degrees.
+// Nothing if more than two are missing, or if they do not belong to one surface
+// with a slope of up to about 75 degrees.
 std::optional<InverseDepthPlane> PlaneAround(const FrameView& frame, int column,
                                              int row) {
   constexpr double kMaxRelativeStep = 0.02;
+  // A whole side is missing where one object hides another, and what is steep
+  // there is the silhouette.
+  constexpr int kMinDepths = 7;
   InverseDepthGrid<3> grid;
   double low = INFINITY, high = 0.0;
   for (int v = -1; v <= 1; ++v) {
@@ -39,7 +42,7 @@ std::optional<InverseDepthPlane> PlaneAround(const FrameView& frame, int column,
     }
   }
   if (!(high - low < kMaxRelativeStep * low)) return std::nullopt;
-  return grid.Fit();
+  return grid.Fit(kMinDepths);
 }
 
 // Finds the point (camera axes at the stamp, m) that a pixel of a level shows
@@ -106,7 +109,7 @@ std::optional<InverseDepthPlane> WidePlaneAround(const FrameView& frame,
     inverse[k] = 1.0 / z;
     grid.Add(i, j, inverse[k]);
   }
-  const InverseDepthPlane plane = *grid.Fit();
+  const InverseDepthPlane plane = *grid.Fit(kSide * kSide);
   const double depth = 1.0 / plane.middle;
   const double limit =
       kMaxSigmas * frame.depth_noise.sigma(depth) * plane.middle * plane.middle;

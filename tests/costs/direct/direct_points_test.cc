@@ -115,7 +115,7 @@ double DepthOfPlane(const FrameView& view, int column, int row, double x,
     rows.bottomRows<1>() << 1.0, u, v;
     right.tail<1>() << 1.0 / z;
   }
-  if (known.size() < 6) return 0.0;
+  if (known.size() < 7) return 0.0;
   const auto [low, high] = std::minmax_element(known.begin(), known.end());
   if (*high >= 1.02 * *low) return 0.0;
   const Eigen::Vector3d plane = rows.colPivHouseholderQr().solve(right);

@@ -202,8 +202,8 @@ TEST(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
       });
 }
 
-// Stereo cameras leave single pixels out. Before points beside them kept their
-// depths and normals, pixels alone were lost, and features erred twice as much.
+// Stereo cameras leave single pixels out. If points beside them have no plane,
+// pixels alone are lost, and features err by 0.5 mm instead of 0.2 mm.
 TEST(OdometryFaultsTest, GapsInDepthCostLittle) {
   const auto thin_out = [](int i, Frame* frame) {
     cv::Mat_<uchar> chance(frame->depth.size());
@@ -212,7 +212,7 @@ TEST(OdometryFaultsTest, GapsInDepthCostLittle) {
   };
   ForEveryTracker(40, 0, 40, thin_out,
                   [](const std::string&, const std::vector<Outcome>& outcomes) {
-                    constexpr double kMaxMeanShift = 0.0003;  // m
+                    constexpr double kMaxMeanShift = 0.0004;  // m
                     double sum = 0.0;
                     for (const Outcome& outcome : outcomes) {
                       EXPECT_TRUE(outcome.ok()) << outcome;
