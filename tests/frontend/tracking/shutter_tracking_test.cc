@@ -77,7 +77,7 @@ TEST_P(ShutterTrackersTest, EarlierDepth) {
 INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
                          testing::Values(ShutterTrust{"features", 2.5, 5.0},
                                          ShutterTrust{"direct", 12.0, 1.4},
-                                         ShutterTrust{"hybrid", 4.0, 5.0}),
+                                         ShutterTrust{"hybrid", 4.2, 5.0}),
                          [](const auto& info) {
                            return std::string(info.param.tracker);
                          });
