@@ -24,7 +24,11 @@ SmallMatrix SqrtInformation(const SmallMatrix& information) {
 }
 
 SmallMatrix SqrtInformationOfCovariance(const SmallMatrix& covariance) {
+  constexpr double kRounding = 1e-9;
   const SmallMatrix S = SqrtInformation(covariance.inverse());
+  if (!covariance.isApprox(covariance.transpose(), kRounding)) {
+    throw InputError("a covariance is not symmetric");
+  }
   if (!S.allFinite()) {
     throw InputError("a covariance is not positive definite");
   }

@@ -35,6 +35,9 @@ TEST(SqrtInformationTest, OfACovarianceThatIsPositiveDefinite) {
   EXPECT_TRUE((S.transpose() * S * covariance).isIdentity(1e-12));
   EXPECT_THROW(SqrtInformationOfCovariance(MotionMatrix::Zero()), InputError);
   EXPECT_THROW(SqrtInformationOfCovariance(-covariance), InputError);
+  Eigen::Matrix3d skewed = Eigen::Matrix3d::Identity();
+  skewed(0, 1) = 0.5;
+  EXPECT_THROW(SqrtInformationOfCovariance(skewed), InputError);
 }
 
 }  // namespace
