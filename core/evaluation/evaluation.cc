@@ -1,5 +1,6 @@
 #include "core/evaluation/evaluation.h"
 
+#include <cmath>
 #include <utility>
 
 #include "core/evaluation/association.h"
@@ -40,8 +41,8 @@ std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
 }  // namespace
 
 std::string EvaluationOptions::Check() const {
-  if (!(max_time_difference >= 0.0)) {
-    return "the largest time difference must not be negative";
+  if (!(max_time_difference >= 0.0 && std::isfinite(max_time_difference))) {
+    return "the largest time difference must be finite and not negative";
   }
   // An interval shorter than its tolerance could end at its start.
   if (!(rpe_delta_seconds > max_time_difference)) {

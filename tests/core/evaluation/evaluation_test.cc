@@ -318,9 +318,9 @@ TEST(EvaluationTest, RefusesWhatCannotBeJudged) {
   const Trajectory b = {{1.5, Rigid3d()}};
   ExpectInputError([&] { Evaluate(a, b); }, {"1.500000 s"});
   const double nan = std::nan("");
-  const EvaluationOptions kBadOptions[] = {{-0.1, 1, 1},    {nan, 1, 1},
-                                           {0.02, 0.02, 1}, {0.02, nan, 1},
-                                           {0.02, 1, 0},    {0.02, 1, nan}};
+  const EvaluationOptions kBadOptions[] = {
+      {-0.1, 1, 1},   {nan, 1, 1},  {INFINITY, 1, 1}, {0.02, 0.02, 1},
+      {0.02, nan, 1}, {0.02, 1, 0}, {0.02, 1, nan}};
   for (const EvaluationOptions& options : kBadOptions) {
     EXPECT_NE(options.Check(), "");
     ExpectInputError([&] { Evaluate(a, a, options); }, {options.Check()});
