@@ -41,8 +41,11 @@ std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
 }  // namespace
 
 std::string EvaluationOptions::Check() const {
-  if (!(max_time_difference >= 0.0 && std::isfinite(max_time_difference))) {
-    return "the largest time difference must be finite and not negative";
+  if (!(max_time_difference >= 0.0)) {
+    return "the largest time difference must not be negative";
+  }
+  if (!std::isfinite(max_time_difference)) {
+    return "the largest time difference must be finite";
   }
   // An interval shorter than its tolerance could end at its start.
   if (!(rpe_delta_seconds > max_time_difference)) {
