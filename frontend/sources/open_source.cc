@@ -56,7 +56,8 @@ const std::vector<SourceType>& Types() {
     std::vector<SourceType> all = {
         {"tum", "TUM RGB-D (rgb.txt and depth.txt, or associations.txt)",
          [](const SourceOptions& options) {
-           return !options.associations_file.empty() ||
+           return (!options.associations_file.empty() &&
+                   !fs::is_regular_file(options.path)) ||
                   HasFile(options, "rgb.txt") ||
                   HasFile(options, "depth.txt") ||
                   HasFile(options, "associations.txt");
@@ -96,6 +97,21 @@ const std::vector<SourceType>& Types() {
     return all;
   }();
   return types;
+}
+
+// Throws InputError for options that this kind of recording does not use.
+void RequireUsed(const SourceType& type, const SourceOptions& options) {
+  const bool is_bag = type.name == "rosbag" || type.name == "rosbag2";
+  if (!options.topics.empty() && !is_bag) {
+    throw InputError(options.path + ": topics are only for bags; this is " +
+                     type.what + ": leave them out (--topics)");
+  }
+  if (!options.associations_file.empty() && type.name != "tum") {
+    throw InputError(options.path +
+                     ": an associations file is only for TUM folders; this "
+                     "is " +
+                     type.what + ": leave it out (--associations)");
+  }
 }
 
 // The first few names in a folder, for a message.
@@ -167,6 +183,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   std::string known;
   for (const SourceType& type : Types()) {
     if (name == kAuto ? type.recognises(options) : name == type.name) {
+      RequireUsed(type, options);
       return WithImuBeside(type.open(options), options);
     }
     known += (known.empty() ? "" : "; ") + type.what;

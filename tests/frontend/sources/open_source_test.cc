@@ -46,5 +46,15 @@ TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
                    {options_.path, "no such file or folder"});
 }
 
+TEST_F(OpenSourceTest, RefusesOptionsOfOtherKindsOfRecordings) {
+  options_.topics = {"/color", "/depth"};
+  ExpectInputError([&] { OpenSource("auto", options_); },
+                   {options_.path, "topics are only for bags", "TUM RGB-D"});
+  options_.topics.clear();
+  options_.associations_file = folder_ / "list.txt";
+  ExpectInputError([&] { OpenSource("7scenes", options_); },
+                   {options_.path, "only for TUM folders", "7-Scenes"});
+}
+
 }  // namespace
 }  // namespace rgbd_pose
