@@ -79,6 +79,7 @@ void LoadMaps(const ProgramSettings& settings, Slam* slam) {
 void RequireMapToSave(const ProgramSettings& settings) {
   if (settings.save_map.empty()) return;
   RequireOtherFolder("save_map", settings.save_map, settings.output.output);
+  RequireOutside("save_map", settings.save_map, settings.sequence.dataset);
   RequireMapFolder(settings.save_map);
 }
 
