@@ -153,11 +153,15 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
                        .c_str()
                  : "");
   text += FormatParameters(result);
+  const bool has_scale = result.parameters[kDepthFactor].status ==
+                         CalibratedParameter::Status::kDetermined;
   text += result.scale_from.empty()
               ? "depth_factor is unchanged: images do not contain the depth "
                 "scale; give a known length, ground truth or motion guess to "
                 "estimate it\n"
-              : "depth scale estimated from " + result.scale_from + "\n";
+              : Format("depth scale %s %s\n",
+                       has_scale ? "estimated from" : "compared with",
+                       result.scale_from.c_str());
   if (result.held_out_pairs > 0) text += FormatHeldOut(result);
   if (result.noise.has_value()) text += FormatDepthNoise(*result.noise);
   text += result.is_accepted
