@@ -40,6 +40,9 @@ class InverseDepthGrid {
     sum_by_row_ += row * inverse_depth;
   }
 
+  // The number of pixels so far.
+  int count() const { return count_; }
+
   // Returns nothing if fewer than `min_count` pixels have a depth; that must be
   // more than fit into one line.
   std::optional<InverseDepthPlane> Fit(int min_count) const {

@@ -21,8 +21,9 @@ constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;
 // used. With f = 525 px this is a surface seen at 80 degrees.
 constexpr double kMaxSlope = 0.011;
 
-// Fewer of nine depths mean the edge of an object or of a hole.
-constexpr int kMinDepths = 6;
+// With fewer of nine depths a whole side may be missing, as where one object
+// hides another: a plane would be extrapolated.
+constexpr int kMinOfPlane = 7;
 
 }  // namespace
 
@@ -58,8 +59,11 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
       grid.Add(du, dv, 1.0 / depth);
     }
   }
-  const std::optional<InverseDepthPlane> plane = grid.Fit(kMinDepths);
-  if (!plane.has_value()) return {};
+  // Fewer mean the edge of an object or of a hole.
+  constexpr int kMinDepths = 6;
+  if (grid.count() < kMinDepths) return {};
+  const std::optional<InverseDepthPlane> plane = grid.Fit(kMinOfPlane);
+  if (!plane.has_value()) return {centre, sigma};
   return {1.0 / plane->At(u - column, v - row),
           sigma * options.noise.mean_share * plane->relative_sigma};
 }
@@ -89,7 +93,7 @@ Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
       if (depth > 0.0) grid.Add(j, i, 1.0 / depth);
     }
   }
-  const std::optional<InverseDepthPlane> plane = grid.Fit(kMinDepths);
+  const std::optional<InverseDepthPlane> plane = grid.Fit(kMinOfPlane);
   if (!plane.has_value()) return Eigen::Vector3d::Zero();
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {

@@ -30,15 +30,16 @@ struct DepthLookupOptions {
 
 // The depth at an image point (px, distorted), never a mix of two surfaces. As
 // the inverse depth of a plane is linear in the image, a plane is fitted to the
-// inverse depths of the 3 x 3 neighbours and evaluated at the point. There is
-// none if their spread exceeds the noise, if the nearest pixel has no depth, or
-// if more than three are missing: that is the edge of an object or of a hole.
+// inverse depths of the 3 x 3 neighbours, of which two may be missing, and
+// evaluated at the point. With three missing it is the depth of the nearest
+// pixel. There is none if more are missing, if that pixel has none, or if the
+// spread exceeds the noise.
 DepthSample LookUpDepth(const Frame& frame, double u, double v,
                         const DepthLookupOptions& options);
 
 // Unit normal (camera axes, towards the camera) of the surface seen at an image
 // point (px): a plane is fitted to the inverse depths of 3 x 3 pixels, several
-// pixels apart to reduce the effect of depth noise. Zero if more than three
+// pixels apart to reduce the effect of depth noise. Zero if more than two
 // depths are missing or if the points are not on one plane. `place`: the image
 // point on the plane z = 1, without distortion.
 Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,

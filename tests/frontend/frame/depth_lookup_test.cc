@@ -60,18 +60,22 @@ TEST(DepthLookupTest, NeverMixesTwoSurfaces) {
   EXPECT_NEAR(LookUpDepth(frame, 321.0, 240.0, {}).depth, 2.5, kRawStep);
 }
 
-// The same plane as long as six of nine pixels have a depth, less well known.
-TEST(DepthLookupTest, FitsThePlaneBesideAFewHoles) {
+TEST(DepthLookupTest, FitsThePlaneBesideOneOrTwoHoles) {
   Frame frame = SlantedFrame();
   const double complete = LookUpDepth(frame, 320.4, 240.0, {}).sigma;
   Set(&frame, 321, 239, 0.0);
-  Set(&frame, 321, 240, 0.0);
-  frame.depth.at<uint16_t>(241, 321) = Frame::kNoDepth;
+  frame.depth.at<uint16_t>(240, 321) = Frame::kNoDepth;
   const DepthSample sample = LookUpDepth(frame, 320.4, 240.0, {});
   EXPECT_NEAR(sample.depth, SlantedDepth(320.4), 2.0 * kRawStep);
-  // Two of three columns know their mean a third as well as nine pixels do, as
-  // the middle is at their edge.
-  EXPECT_NEAR(sample.sigma, std::sqrt(3.0) * complete, 1e-6);
+  // The variance of the middle of these seven is 19 / 105, of all nine 1 / 9.
+  EXPECT_NEAR(sample.sigma, std::sqrt(9.0 * 19.0 / 105.0) * complete, 1e-5);
+}
+
+TEST(DepthLookupTest, TakesTheCentreIfAWholeSideIsMissing) {
+  Frame frame = SlantedFrame();
+  for (int row = 239; row <= 241; ++row) Set(&frame, 321, row, 0.0);
+  EXPECT_NEAR(LookUpDepth(frame, 320.4, 240.0, {}).depth, SlantedDepth(320),
+              kRawStep);
   Set(&frame, 319, 240, 0.0);
   EXPECT_EQ(LookUpDepth(frame, 320.4, 240.0, {}).depth, 0.0);
 }
@@ -140,15 +144,19 @@ TEST(SurfaceNormalTest, HasNoneAtEdgesHolesAndBorders) {
   EXPECT_NE(NormalAt(frame, camera, 200.0, 200.0), Vector3d::Zero());
 }
 
-TEST(SurfaceNormalTest, IsThatOfTheRestBesideAFewHoles) {
+TEST(SurfaceNormalTest, IsThatOfTheRestBesideOneOrTwoHoles) {
   const Camera camera;
   const Vector3d normal = Vector3d(0.5, 0.2, -1).normalized();
   Frame frame = PlaneFrame(camera, normal, 1.5);
-  frame.depth.colRange(305, 306).setTo(0);
+  for (const int row : {235, 240}) frame.depth.at<uint16_t>(row, 305) = 0;
   EXPECT_LE((NormalAt(frame, camera, 310.0, 240.0) - normal).norm(), 0.02);
-  // One of the six others is on another surface.
   frame.depth.at<uint16_t>(235, 315) += 400;
-  EXPECT_EQ(NormalAt(frame, camera, 310.0, 240.0), Vector3d::Zero());
+  EXPECT_EQ(NormalAt(frame, camera, 310.0, 240.0), Vector3d::Zero())
+      << "one of the others is on another surface";
+  frame.depth.at<uint16_t>(235, 315) -= 400;
+  frame.depth.at<uint16_t>(245, 305) = 0;
+  EXPECT_EQ(NormalAt(frame, camera, 310.0, 240.0), Vector3d::Zero())
+      << "a whole side is missing";
 }
 
 using testing::HasSubstr;
