@@ -8,10 +8,7 @@
 namespace rgbd_pose {
 
 VoxelCloud::VoxelCloud(float voxel_size)
-    : voxel_size_(voxel_size),
-      voxels_per_metre_(1.0F / voxel_size),
-      slots_(size_t{1} << kFirstSlotBits, 0),
-      hash_shift_(64 - kFirstSlotBits) {}
+    : voxel_size_(voxel_size), voxels_per_metre_(1.0F / voxel_size) {}
 
 void VoxelCloud::Add(const ColoredPoint& point) {
   Eigen::Vector3i cell;
@@ -21,10 +18,9 @@ void VoxelCloud::Add(const ColoredPoint& point) {
     if (!(x >= -kVoxelKeyRange && x < kVoxelKeyRange)) return;
     cell[i] = cvFloor(x);
   }
-  const uint64_t key = VoxelKey(cell);
-  Voxel* voxel = FindOrInsert(key);
+  Voxel* voxel = FindOrInsert(cell);
   if (voxel->count == kMaxCount) return;
-  voxel->offset += point.position - Center(key);
+  voxel->offset += point.position - Center(voxel->key);
   for (int i = 0; i < 3; ++i) voxel->color[i] += point.color[i];
   ++voxel->count;
 }
@@ -65,42 +61,24 @@ Eigen::Vector3f VoxelCloud::Center(uint64_t key) const {
   return (VoxelOfKey(key).cast<float>().array() + 0.5F) * voxel_size_;
 }
 
-VoxelCloud::Voxel* VoxelCloud::FindOrInsert(uint64_t key) {
+VoxelCloud::Voxel* VoxelCloud::FindOrInsert(const Eigen::Vector3i& cell) {
+  const uint64_t key = VoxelKey(cell);
   if (last_ < voxels_.size() && voxels_[last_].key == key) {
     return &voxels_[last_];
   }
-  uint32_t* slot = &slots_[SlotOf(key)];
-  if (*slot == 0) {
+  Eigen::Vector3i block;
+  int in_block = 0;
+  for (int i = 0; i < 3; ++i) {
+    block[i] = cell[i] >> kSideBits;  // rounds down
+    in_block = in_block << kSideBits | (cell[i] & ((1 << kSideBits) - 1));
+  }
+  uint32_t& place = blocks_[VoxelKey(block)][in_block];
+  if (place == 0) {
     voxels_.push_back({key});
-    *slot = static_cast<uint32_t>(voxels_.size());
+    place = static_cast<uint32_t>(voxels_.size());
   }
-  last_ = *slot - 1;
-  // The table is at most half full, so that a search takes 1.5 probes on
-  // average.
-  if (2 * voxels_.size() > slots_.size()) {
-    slots_.assign(2 * slots_.size(), 0);
-    --hash_shift_;
-    for (size_t i = 0; i < voxels_.size(); ++i) {
-      slots_[SlotOf(voxels_[i].key)] = static_cast<uint32_t>(i + 1);
-    }
-  }
+  last_ = place - 1;
   return &voxels_[last_];
-}
-
-size_t VoxelCloud::SlotOf(uint64_t key) const {
-  // Knuth's multiplicative hashing: 2^64 over the golden ratio. It hashes
-  // blocks of 2 x 2 x 4 cubes, whose slots share a cache line, because most
-  // lookups are next to the previous one.
-  constexpr uint64_t kInBlock =
-      (1ULL << 2 * kVoxelKeyBits) | (1ULL << kVoxelKeyBits) | 3;
-  const uint64_t in_block = (key >> (2 * kVoxelKeyBits) & 1) << 3 |
-                            (key >> kVoxelKeyBits & 1) << 2 | (key & 3);
-  const uint64_t hash = (key & ~kInBlock) * 0x9E3779B97F4A7C15ULL;
-  size_t slot = ((hash >> hash_shift_) & ~uint64_t{15}) | in_block;
-  while (slots_[slot] != 0 && voxels_[slots_[slot] - 1].key != key) {
-    slot = (slot + 1) & (slots_.size() - 1);
-  }
-  return slot;
 }
 
 }  // namespace rgbd_pose

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "frontend/fusion/mesh_file.h"
@@ -39,20 +40,20 @@ class VoxelCloud {
     uint32_t count = 0;
   };
 
+  static constexpr int kSideBits = 2;  // of a block: 4 cubes
+  static constexpr int kBlockSize = 1 << 3 * kSideBits;
   // Further points of a cube are not added: the sums would lose accuracy.
   static constexpr uint32_t kMaxCount = 1U << 20;
-  static constexpr int kFirstSlotBits = 10;
 
   Eigen::Vector3f Center(uint64_t key) const;
-  Voxel* FindOrInsert(uint64_t key);
-  size_t SlotOf(uint64_t key) const;  // the one with the key, or a free one
+  Voxel* FindOrInsert(const Eigen::Vector3i& cell);
 
   float voxel_size_;
   float voxels_per_metre_;
   std::vector<Voxel> voxels_;
-  // Open addressing: 1 + index into voxels_, 0 if empty. Size: a power of two.
-  std::vector<uint32_t> slots_;
-  int hash_shift_;
+  // By the key of a block, for each of its cubes: 1 + index into voxels_, 0 if
+  // it is empty. Blocks keep near together what is looked up in turn.
+  std::unordered_map<uint64_t, std::array<uint32_t, kBlockSize>> blocks_;
   size_t last_ = 0;  // the last voxel, often shared by the next pixel
 };
 

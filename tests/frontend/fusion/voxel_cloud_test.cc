@@ -63,7 +63,7 @@ TEST(VoxelCloudTest, MillionsOfPointsOfACubeKeepTheirMean) {
   EXPECT_NEAR(mean.position.x(), 0.9F, 0.01F);
 }
 
-// Compares with a std::map while the hash table grows many times.
+// Compares with a std::map of the cubes alone, without blocks.
 TEST(VoxelCloudTest, CountsTheCubesThatAMapCounts) {
   constexpr int kPoints = 200000;
   constexpr float kSize = 0.0625F;  // no rounding in x / kSize
