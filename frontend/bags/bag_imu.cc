@@ -1,7 +1,7 @@
 #include "frontend/bags/bag_imu.h"
 
 #include <algorithm>
-#include <cctype>
+#include <opencv2/core.hpp>
 
 #include "core/inertial/imu_check.h"
 #include "core/util/input_error.h"
@@ -22,10 +22,7 @@ constexpr int kFirst = 200;
 constexpr size_t kExamined = 2000;
 
 bool IsNamed(const std::string& topic, const char* part) {
-  std::string name = topic;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return name.find(part) != std::string::npos;
+  return cv::toLowerCase(topic).find(part) != std::string::npos;
 }
 
 // Whether the name says that only one of both quantities is measured.
