@@ -54,9 +54,13 @@ void MakeFolder(const fs::path& folder) {
   for (const fs::path& path : above) SyncFolder(path.string());
 }
 
-// Throws InputError if a folder without a map contains other files.
+// Throws InputError if a folder without a map of this version contains other
+// files. A damaged map may be replaced.
 void RequireNoOtherThings(const fs::path& folder) {
-  if (fs::exists(folder / kIndex)) return;
+  if (const fs::path index = folder / kIndex; fs::exists(index)) {
+    RequireIndexFormat(ReadTextFile(index.string()), index.string());
+    return;
+  }
   for (const auto& entry : fs::directory_iterator(folder)) {
     const fs::path& file = entry.path();
     // A program that was killed before its first map was complete leaves such

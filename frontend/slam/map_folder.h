@@ -15,7 +15,8 @@ namespace rgbd_pose {
 // killed or the power fails, the folder contains either the old map or the new
 // one. Throws InputError and keeps the old map if the map is invalid
 // (KeyframeMap::Check) or if the folder cannot be written to, contains anything
-// but a map, or is being saved to by another program.
+// but a map or a map of another version, or is being saved to by another
+// program.
 void SaveMap(const std::string& folder, const KeyframeMap& map);
 
 // Creates the folder. Throws as SaveMap would, but before a long computation.
@@ -35,6 +36,10 @@ std::string FormatMapIndex(const KeyframeMap& map);
 // for a text that is no map, of another version, damaged or edited. Does not
 // check the map (KeyframeMap::Check).
 KeyframeMap ParseMapIndex(std::string_view text, const std::string& path);
+
+// Throws InputError, which names `path`, for a text that does not begin as an
+// index of this version.
+void RequireIndexFormat(std::string_view text, const std::string& path);
 
 // The last line of an index: the checksum of the text above it.
 std::string ChecksumLine(std::string_view above);

@@ -153,21 +153,7 @@ std::string FormatCamera(const Camera& camera) {
 
 // Checks the first and the last line of a text and returns it without the last.
 std::string_view Unseal(std::string_view text, const std::string& path) {
-  if (text.substr(0, kMagic.size()) != kMagic) {
-    throw InputError(path + ": is not a map of rgbd_slam");
-  }
-  const size_t line_end = std::min(text.find('\n'), text.size());
-  std::string_view version =
-      text.substr(kMagic.size(), line_end - kMagic.size());
-  // Windows line ends are an edit, which the checksum shows.
-  if (!version.empty() && version.back() == '\r') version.remove_suffix(1);
-  if (version != kVersion) {
-    constexpr size_t kShown = 20;  // the line of a damaged file may not end
-    throw InputError(path + ": has format version " +
-                     std::string(version.substr(0, kShown)) +
-                     ", this program reads version " + std::string(kVersion) +
-                     " only; use a newer program");
-  }
+  RequireIndexFormat(text, path);
   const size_t last = text.rfind('\n', text.size() - 2) + 1;
   if (text.substr(last) != ChecksumLine(text.substr(0, last))) {
     throw InputError(path +
@@ -186,6 +172,25 @@ std::string ChecksumLine(std::string_view above) {
 bool IsImageName(std::string_view word) {
   return word.size() == 16 &&
          word.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+void RequireIndexFormat(std::string_view text, const std::string& path) {
+  if (text.substr(0, kMagic.size()) != kMagic) {
+    throw InputError(path +
+                     ": is not a map of rgbd_slam; choose another folder");
+  }
+  const size_t line_end = std::min(text.find('\n'), text.size());
+  std::string_view version =
+      text.substr(kMagic.size(), line_end - kMagic.size());
+  // Windows line ends are an edit, which the checksum shows.
+  if (!version.empty() && version.back() == '\r') version.remove_suffix(1);
+  if (version != kVersion) {
+    constexpr size_t kShown = 20;  // the line of a damaged file may not end
+    throw InputError(path + ": has format version " +
+                     std::string(version.substr(0, kShown)) +
+                     ", this program reads version " + std::string(kVersion) +
+                     " only; use a newer program");
+  }
 }
 
 std::string FormatMapIndex(const KeyframeMap& map) {

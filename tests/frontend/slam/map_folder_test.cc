@@ -281,6 +281,13 @@ TEST_F(MapFolderTest, RefusesFoldersOfOtherThings) {
                  folder_ / "photos: contains files that are not part of a map");
   EXPECT_THAT(Names(folder_ / "photos"), testing::ElementsAre("cat.png"));
   expect_refused(folder_ / "photos/cat.png", "no map can be saved here (");
+  for (const auto& [text, message] :
+       {std::pair("the way to the lake\n", "is not a map of rgbd_slam"),
+        std::pair("rgbd_pose_map 2\n", "has format version 2")}) {
+    folder_.Write("lake/map.txt", text);
+    expect_refused(folder_ / "lake", folder_ / "lake/map.txt: " + message);
+    EXPECT_EQ(ReadTextFile(folder_ / "lake/map.txt"), text);
+  }
   expect_refused("/proc/none/map", "no map can be saved here (");
   RequireMapFolder(map_);
   EXPECT_TRUE(fs::is_empty(map_));
