@@ -43,12 +43,18 @@ void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
   }
 }
 
-// In frames.csv, segments keep their numbers even if rgbd_slam has joined them.
-bool IsOneSegment(const FinishedRun& run) {
-  const std::optional<CsvTable> keyframes = KeyframesOf(run);
-  if (!keyframes.has_value()) return false;
-  const std::vector<std::string> words = keyframes->Words("segment");
-  return std::set<std::string>(words.begin(), words.end()).size() == 1;
+// The segment of each frame. In frames.csv it is that known at the time, in
+// slam.csv also that of trajectory.txt, where segments that met are one.
+std::vector<double> SegmentsOf(const fs::path& run, const CsvTable& frames) {
+  const std::string map_frames = (run / "slam.csv").string();
+  if (!fs::exists(map_frames)) return frames.Numbers("segment");
+  const CsvTable table = CsvTable::Read(map_frames);
+  if (table.size() != frames.size()) {
+    throw InputError(map_frames + ": has " + std::to_string(table.size()) +
+                     " frames, but frames.csv " +
+                     std::to_string(frames.size()) + "; repeat the run");
+  }
+  return table.Numbers("final_segment");
 }
 
 // As FinishedRun::level_from_world, from the direction of up in the world.
@@ -137,12 +143,11 @@ FinishedRun::FinishedRun(const std::string& run_folder,
 
   const CsvTable table = CsvTable::Read(path / "frames.csv");
   const std::vector<std::string> status = table.Words("status");
-  const std::vector<double> segment = table.Numbers("segment");
-  const bool is_one = IsOneSegment(*this);
+  const std::vector<double> segment = SegmentsOf(path, table);
   for (size_t i = 0; i < status.size(); ++i) {
     if (status[i] == "lost") continue;
     frames.push_back(static_cast<int>(i));
-    segments.push_back(is_one ? 0 : static_cast<int>(segment[i]));
+    segments.push_back(static_cast<int>(segment[i]));
   }
   lost = static_cast<int>(status.size() - frames.size());
   if (frames.empty()) {

@@ -35,14 +35,19 @@ nlohmann::json LocalisedFrom(const std::vector<SlamFrame>& frames) {
 
 }  // namespace
 
-std::string FormatSlamCsv(const std::vector<SlamFrame>& frames) {
+std::string FormatSlamCsv(const Slam& slam,
+                          const std::vector<SlamFrame>& frames) {
   std::string text =
-      "timestamp,status,segment,odom_tx,odom_ty,odom_tz,odom_qx,odom_qy,"
-      "odom_qz,odom_qw,map_tx,map_ty,map_tz,map_qx,map_qy,map_qz,map_qw,"
-      "pairs,loops,joined,map_ms,wait_ms\n";
+      "timestamp,status,segment,final_segment,odom_tx,odom_ty,odom_tz,odom_qx,"
+      "odom_qy,odom_qz,odom_qw,map_tx,map_ty,map_tz,map_qx,map_qy,map_qz,"
+      "map_qw,pairs,loops,joined,map_ms,wait_ms\n";
+  const std::vector<int> segments = slam.PathSegments();  // none of lost frames
+  auto segment = segments.begin();
   for (const SlamFrame& frame : frames) {
-    text += Format("%.6f,%s,%d", frame.tracked.timestamp,
-                   ToString(frame.tracked.status), frame.segment) +
+    const bool is_lost = frame.tracked.status == TrackingStatus::kLost;
+    text += Format("%.6f,%s,%d,%d", frame.tracked.timestamp,
+                   ToString(frame.tracked.status), frame.segment,
+                   is_lost ? -1 : *segment++) +
             FormatPose(frame.odom_from_cam) + FormatPose(frame.map_from_odom) +
             Format(",%d,%d,%d,%.3f,%.3f\n", frame.pairs, frame.loops,
                    frame.joined, frame.map_ms, frame.wait_ms);

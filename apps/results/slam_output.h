@@ -9,7 +9,8 @@
 namespace rgbd_pose {
 
 // slam.csv: segment, odom_from_cam, map_from_odom and map updates per frame.
-std::string FormatSlamCsv(const std::vector<SlamFrame>& frames);
+std::string FormatSlamCsv(const Slam& slam,
+                          const std::vector<SlamFrame>& frames);
 
 // The poses map_from_cam as known at the time, without frames whose segment was
 // merged into another one later: their poses are in another world.

@@ -93,7 +93,7 @@ std::string WriteMapTables(const SequenceRun& run,
                            const RunFolder& output) {
   Warn({SlamWarning(summary)});
   const Slam& slam = *run.slam();
-  output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  output.WriteFile("slam.csv", FormatSlamCsv(slam, run.slam_frames()));
   output.WriteFile("trajectory_online.txt",
                    FormatOnlineTrajectory(slam, run.slam_frames()));
   output.WriteFile("trajectory_odometry.txt",

@@ -220,6 +220,14 @@ Trajectory Slam::Path() const {
   return path;
 }
 
+std::vector<int> Slam::PathSegments() const {
+  std::vector<int> segments;
+  for (const PathFrame& frame : path_) {
+    segments.push_back(segments_.at(frame.keyframe));
+  }
+  return segments;
+}
+
 std::vector<Setting> SettingTable(SlamSettings* settings) {
   constexpr std::string_view kGroup = "Mapping";
   MappingOptions* mapping = &settings->mapping;

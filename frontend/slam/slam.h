@@ -130,6 +130,9 @@ class Slam {
   // The current poses (map_from_cam) of all frames that were not lost.
   Trajectory Path() const;
 
+  // The segments of the same frames, as currently known.
+  std::vector<int> PathSegments() const;
+
   // After Finish: how it has turned the poses of the map: by the smallest angle
   // that lets the z axis of the world point up, about the first camera. The
   // identity if it was not to, without gravity and with a loaded map, whose

@@ -12,9 +12,10 @@ namespace rgbd_pose {
 
 std::map<int, Trajectory> Slam::PathsBySegment() const {
   const Trajectory path = Path();
+  const std::vector<int> segments = PathSegments();
   std::map<int, Trajectory> paths;
   for (size_t i = 0; i < path.size(); ++i) {
-    paths[segments_.at(path_[i].keyframe)].push_back(path[i]);
+    paths[segments[i]].push_back(path[i]);
   }
   return paths;
 }

@@ -36,6 +36,25 @@ TEST(FinishedRunTest, ACloudHasTheDepthNoiseThatTrackingHad) {
   EXPECT_DOUBLE_EQ(NoiseOfCloudAt4M("--depth_noise=constant\n"), 0.005);
 }
 
+// A camera that was found in one of two maps: its first frames were in a world
+// of their own, the second map is in another one.
+TEST(FinishedRunTest, FramesAreInTheSegmentThatTheirsHasJoined) {
+  const TempFolder folder;
+  folder.Write("run/frames.csv", "status,segment\nok,2\nlost,3\nok,0\n");
+  folder.Write("run/slam.csv", "final_segment\n0\n-1\n0\n");
+  folder.Write("run/keyframes.csv", "timestamp,segment\n1.0,0\n1.0,1\n");
+  folder.Write("run/trajectory.txt", "1 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n");
+  folder.Write("run/config.flags", "# Input\n--dataset=none\n");
+  folder.Write("run/metrics.json",
+               R"({"gravity": {"up": [0, 0, 1], "segment": 0}})");
+  const FinishedRun run(folder / "run");
+  EXPECT_EQ(run.segments, std::vector<int>(2, 0));
+  EXPECT_FALSE(run.level_from_world.IsIdentity());
+  folder.Write("run/slam.csv", "final_segment\n0\n");
+  ExpectInputError([&] { FinishedRun(folder / "run"); },
+                   {"slam.csv: has 1 frames, but frames.csv 3; repeat"});
+}
+
 // Down and ahead of a level camera, in the world of a run with these metrics.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> LevelIn(
     const std::string& metrics) {

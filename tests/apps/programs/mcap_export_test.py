@@ -281,7 +281,8 @@ def main(bin_folder, work):
     check('messages encoded as json' in said, said)
 
     # Without a map, and with frames of which nobody knows where they were.
-    os.remove(os.path.join(result, 'keyframes.csv'))
+    for file in ('keyframes.csv', 'slam.csv'):
+        os.remove(os.path.join(result, file))
     rows = [row.split(',') for row in read_lines(result, 'frames.csv')]
     for row in rows[-5:]:
         row[rows[0].index('segment')] = '1'

@@ -179,6 +179,7 @@ TEST(SlamTest, SegmentsThatMeetAreJoined) {
   ASSERT_LT(first, path.size());
   const Rigid3d expected = Walk().truth[30].Inverse() * Walk().truth[59];
   EXPECT_LT(ErrorOf(path.back().world_from_cam, expected).translation, 0.005);
+  EXPECT_EQ(player.slam.PathSegments(), std::vector<int>(path.size(), 0));
 }
 
 TEST(SlamTest, AMapThatIsHeldIsTrackedInAndStaysAsItIs) {
@@ -196,6 +197,9 @@ TEST(SlamTest, AMapThatIsHeldIsTrackedInAndStaysAsItIs) {
   EXPECT_EQ(second.frames.back().segment, 0);
   EXPECT_LT(second.Error(second.frames.size() - 1), 0.005);
   second.slam.Finish();
+  // In the end, the frames before are in the map, too.
+  EXPECT_EQ(second.slam.PathSegments(),
+            std::vector<int>(second.slam.Path().size(), 0));
   const KeyframeMap after = second.slam.Map();
   ASSERT_GE(after.keyframes.size(), map.keyframes.size());
   for (size_t k = 0; k < map.keyframes.size(); ++k) {
