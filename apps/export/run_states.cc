@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The covariances of the map's keyframes, by time. Empty without a map, and
+// The covariances of this run's keyframes, by time. Empty without a map, and
 // without those that could not be computed.
 std::map<double, MotionMatrix> KeyframeCovariances(const FinishedRun& run) {
   std::map<double, MotionMatrix> covariances;
@@ -25,8 +25,21 @@ std::map<double, MotionMatrix> KeyframeCovariances(const FinishedRun& run) {
        SplitText(std::string(kCovarianceColumns).substr(1), ',')) {
     columns.push_back(table->Numbers(name));
   }
+  std::map<double, int> frames;
+  for (size_t i = 0; i < run.frames.size(); ++i) {
+    frames[run.trajectory[i].timestamp] = run.frames[i];
+  }
   const std::vector<double> times = table->Numbers("timestamp");
-  for (size_t row = 0; row < table->size(); ++row) {
+  const std::vector<double> numbers = table->Numbers("keyframe");
+  // Keyframes of a loaded map may have the same times, but come first. The
+  // numbers of the others are those of their frames, all moved by the same.
+  std::optional<double> moved;
+  for (size_t row = table->size(); row-- > 0;) {
+    const auto frame = frames.find(times[row]);
+    if (frame == frames.end()) continue;
+    const double by = numbers[row] - frame->second;
+    if (by != moved.value_or(by)) continue;
+    moved = by;
     if (std::isnan(columns[0][row])) continue;
     MotionMatrix& covariance = covariances[times[row]];
     auto column = columns.begin();

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "apps/export/export_format.h"
+#include "apps/export/run_states.h"
+#include "apps/results/frame_tables.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
@@ -53,6 +55,30 @@ TEST(FinishedRunTest, FramesAreInTheSegmentThatTheirsHasJoined) {
   folder.Write("run/slam.csv", "final_segment\n0\n");
   ExpectInputError([&] { FinishedRun(folder / "run"); },
                    {"slam.csv: has 1 frames, but frames.csv 3; repeat"});
+}
+
+// The same recording was mapped before: the keyframes of both runs have the
+// same times. The one of the first frame was removed, as it was redundant.
+TEST(FinishedRunTest, KeyframesOfALoadedMapDoNotSayHowExactItsPosesAre) {
+  const TempFolder folder;
+  folder.Write("run/frames.csv", "status,segment\nok,0\nok,0\n");
+  folder.Write("run/edges.csv", FormatEdgesCsv({}));
+  std::string keyframes =
+      std::string("keyframe,timestamp,segment") + kCovarianceColumns + "\n";
+  for (const auto& [start, variance] :
+       {std::pair("0,1,0", ",4"), std::pair("1,2,0", ",4"),
+        std::pair("4,2,0", ",9")}) {
+    keyframes += start;
+    for (int i = 0; i < 21; ++i) keyframes += variance;
+    keyframes += "\n";
+  }
+  folder.Write("run/keyframes.csv", keyframes);
+  folder.Write("run/trajectory.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  folder.Write("run/config.flags", "# Input\n--dataset=none\n");
+  const FinishedRun run(folder / "run");
+  const std::vector<CameraState> states = StatesOf(run, run.trajectory);
+  EXPECT_EQ(states[0].covariance, MotionMatrix::Zero()) << "not known";
+  EXPECT_EQ(states[1].covariance, MotionMatrix::Constant(9));
 }
 
 // Down and ahead of a level camera, in the world of a run with these metrics.
