@@ -59,6 +59,19 @@ struct Row {
   Vector3d value;
 };
 
+// The covariance of turn x v, in the axes of the start: a wrong turn directs
+// forces wrongly, gravity before all. As its error grows from the start, the
+// velocity is off by half of that, and the position by t / 6 of it.
+Matrix3d CovarianceAcross(const PreintegratedMotion& step,
+                          const CameraTurn& turn) {
+  const Matrix3d axes = step.start_from_end.toRotationMatrix();
+  Matrix3d across;
+  const Vector3d& v = step.v;
+  across << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  const Matrix3d by_turn = across * axes;
+  return by_turn * turn.covariance * by_turn.transpose();
+}
+
 Row RowOf(const Sums& sums, const Vector3d& position) {
   Row row;
   const double t = sums.seconds;
@@ -155,6 +168,8 @@ std::optional<DeadReckoning::Velocity> DeadReckoning::VelocityAt(
     const CameraImu& imu, double stamp, const Vector3d& angular) const {
   const std::optional<PreintegratedMotion> step = StepTo(imu, stamp);
   if (!step.has_value()) return std::nullopt;
+  const std::optional<CameraTurn> turn = imu.Turn(path_.back().stamp, stamp);
+  if (!turn.has_value()) return std::nullopt;
   const Matrix3d world_from_last =
       path_.back().world_from_cam.rotation.toRotationMatrix();
   const Matrix3d now_from_last =
@@ -165,11 +180,9 @@ std::optional<DeadReckoning::Velocity> DeadReckoning::VelocityAt(
       step->seconds * world_from_last.transpose(),
       step->by_bias.block<3, 3>(3, 3);
   const Vector3d sensor = by_x * solution_->x + step->v;
-  const Matrix3d by_gyro = step->by_bias.block<3, 3>(3, 0);
-  const Matrix3d covariance =
-      by_x * solution_->covariance * by_x.transpose() +
-      step->covariance.block<3, 3>(3, 3) +
-      by_gyro * imu.covariance().topLeftCorner<3, 3>() * by_gyro.transpose();
+  const Matrix3d covariance = by_x * solution_->covariance * by_x.transpose() +
+                              step->covariance.block<3, 3>(3, 3) +
+                              std::pow(0.5, 2) * CovarianceAcross(*step, *turn);
   return Velocity{now_from_last * sensor - angular.cross(imu.position()),
                   now_from_last * covariance * now_from_last.transpose()};
 }
@@ -194,11 +207,10 @@ std::optional<DeadReckoning::Motion> DeadReckoning::Predict(
   Motion motion;
   motion.cur_from_last = Rigid3d(step->start_from_end, center).Inverse();
   motion.covariance.topLeftCorner<3, 3>() = turn->covariance;
-  const Matrix3d by_gyro = step->by_bias.block<3, 3>(6, 0);
   motion.covariance.bottomRightCorner<3, 3>() =
       by_x * solution_->covariance * by_x.transpose() +
       step->covariance.block<3, 3>(6, 6) +
-      by_gyro * imu.covariance().topLeftCorner<3, 3>() * by_gyro.transpose();
+      std::pow(t / 6.0, 2) * CovarianceAcross(*step, *turn);
   return motion;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/geometry/twist.h"
 #include "tests/support/camera_with_imu.h"
@@ -98,6 +99,46 @@ TEST(DeadReckoningTest, KnowsTheVelocityOfTheCamera) {
   const Blind blind(1);
   EXPECT_FALSE(blind.path.VelocityAt(blind.imu, 9.9, Eigen::Vector3d::Zero())
                    .has_value());
+}
+
+// Before images have shown a turn about an axis, what the gyroscope says of one
+// may be wrong altogether, and with it where gravity pulls.
+TEST(DeadReckoningTest, AnUntestedTurnMakesThePositionUncertain) {
+  constexpr double kGravity = 9.81;  // m/s^2
+  constexpr double kSeen = 2.0;      // s
+  // The camera stands still, but then the gyroscope claims that it turns.
+  const Eigen::Vector3d rate(0.0, 0.0, 1.0);
+  const double delay = *CameraWithImu().truth.delay_s;
+  CameraImu imu({CameraWithImu().truth, true});
+  const Eigen::Quaterniond cam_from_imu =
+      CameraWithImu().truth.cam_from_imu->rotation;
+  std::vector<ImuSample> samples;
+  for (int i = -100; i < 700; ++i) {
+    const double t = 0.005 * i;
+    samples.push_back(
+        {t + delay,
+         cam_from_imu.conjugate() *
+             (t < kSeen ? Eigen::Vector3d::Zero() : rate),
+         cam_from_imu.conjugate() * Eigen::Vector3d(0.0, -kGravity, 0.0)});
+  }
+  imu.Add(samples);
+  DeadReckoning path;
+  for (int frame = 0; frame <= 60; ++frame) {
+    path.Add(imu, frame / 30.0, Rigid3d());  // until kSeen
+  }
+  const auto expect_covered = [](const Eigen::Vector3d& off,
+                                 const Eigen::Matrix3d& covariance) {
+    constexpr double kSigmas = 2.0;
+    EXPECT_GT(off.norm(), 1.0);
+    EXPECT_LT(off.norm(), kSigmas * std::sqrt(covariance.trace()));
+  };
+  const auto motion = path.Predict(imu, kSeen + 1.0);
+  ASSERT_TRUE(motion.has_value());
+  expect_covered(motion->cur_from_last.Inverse().translation,
+                 motion->covariance.bottomRightCorner<3, 3>());
+  const auto velocity = path.VelocityAt(imu, kSeen + 1.0, rate);
+  ASSERT_TRUE(velocity.has_value());
+  expect_covered(velocity->linear, velocity->covariance);
 }
 
 TEST(DeadReckoningTest, EndsAfterTwoSeconds) {
