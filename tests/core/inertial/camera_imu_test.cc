@@ -181,6 +181,40 @@ TEST(CameraImuTest, SaysNothingWithoutSamplesOrBeyondItsRange) {
   EXPECT_LT(missing, 20);
 }
 
+// Bits that a cable turns over: single samples are far from their neighbours.
+TEST(CameraImuTest, SaysNothingWhereASampleIsASpike) {
+  CameraWithImu world;
+  world.bias.setZero();
+  CameraImu imu({world.truth, true});
+  std::vector<ImuSample> samples = world.Samples(-0.2, 3.0);
+  for (size_t i = 0; i < samples.size(); i += 97) samples[i].gyro.x() += 20.0;
+  imu.Add(samples);
+  int missing = 0;
+  for (double t = 0.0; t < 2.0; t += 0.1) {
+    const std::optional<CameraTurn> turn = imu.Turn(t, t + 0.1);
+    missing += !turn.has_value();
+    if (turn.has_value()) {
+      EXPECT_LT(ErrorOf(*turn, world, t, t + 0.1), 1e-3) << t;
+    }
+  }
+  EXPECT_GT(missing, 0);
+  EXPECT_LT(missing, 10);
+}
+
+TEST(CameraImuTest, SaysWhichSamplesAreMissing) {
+  CameraWithImu world;
+  CameraImu imu({world.truth, true});
+  world.Teach(0.0, 3.0, kTurnSigma, &imu);
+  EXPECT_NE(imu.doubt().find("same clock"), std::string::npos) << imu.doubt();
+  const std::vector<ImuSample> samples = world.Samples(-0.2, 3.2);
+  std::vector<ImuSample> few;
+  for (size_t i = 0; i < samples.size(); i += 20) few.push_back(samples[i]);
+  imu.Add(few);
+  world.Teach(0.0, 3.0, kTurnSigma, &imu);
+  EXPECT_NE(imu.doubt().find("10 samples per second"), std::string::npos)
+      << imu.doubt();
+}
+
 TEST(CameraImuTest, CannotUseASensorWithoutGyroscopeOrMounting) {
   const CameraWithImu world;
   EXPECT_TRUE(CameraImu::CanUse({world.truth, true}));
