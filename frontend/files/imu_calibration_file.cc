@@ -31,10 +31,22 @@ constexpr char kCamFromImu[] = "T_cam_imu";
 constexpr const char* kImuFromCam[] = {"T_imu_cam", "IMU.T_b_c1", "Tbc"};
 constexpr char kDelay[] = "timeshift_cam_imu";
 
+// Both are on one body, so that a greater distance is in mm.
+Rigid3d ReadMotion(const YamlSection& section, const char* key) {
+  constexpr double kMost = 10.0;  // m
+  const Rigid3d motion = section.RigidMotion(key);
+  if (motion.translation.norm() > kMost) {
+    section.Fail(key, Format("has a translation of %.4g; it must be in m, at "
+                             "most %g",
+                             motion.translation.norm(), kMost));
+  }
+  return motion;
+}
+
 std::optional<Rigid3d> ReadMounting(const YamlSection& section) {
-  if (section.Has(kCamFromImu)) return section.RigidMotion(kCamFromImu);
+  if (section.Has(kCamFromImu)) return ReadMotion(section, kCamFromImu);
   for (const char* key : kImuFromCam) {
-    if (section.Has(key)) return section.RigidMotion(key).Inverse();
+    if (section.Has(key)) return ReadMotion(section, key).Inverse();
   }
   return std::nullopt;
 }

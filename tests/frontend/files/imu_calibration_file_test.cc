@@ -172,6 +172,8 @@ TEST_F(ImuCalibrationFileTest, BadValuesAreOneLine) {
       {"T_cam_imu: [1, 2]\n", "imu.yaml:1: T_cam_imu needs a list of 4"},
       {"T_cam_imu: [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]",
        "T_cam_imu contains no valid rotation"},
+      {"T_imu_cam: [[1, 0, 0, 20], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]",
+       "T_imu_cam has a translation of 20; it must be in m, at most 10"},
       {"T_cam_inu: 1\n", "did you mean T_cam_imu?"},
       {"imu0:\n  gyroscope_noise_densty: 1\n",
        "imu.yaml:2: imu0.gyroscope_noise_densty"},
