@@ -212,7 +212,7 @@ std::string CameraImu::doubt() const {
   const double interval = (samples.back().stamp - samples.front().stamp) /
                           static_cast<double>(samples.size() - 1);
   if (interval > ImuBuffer::kMaxGap) {
-    return Format("it has %.3g samples per second; at least %.3g are needed",
+    return Format("it has %.3g samples per second; more than %.3g are needed",
                   1.0 / interval, 1.0 / ImuBuffer::kMaxGap);
   }
   return "images have shown too few turns";
