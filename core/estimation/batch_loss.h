@@ -98,23 +98,23 @@ class ScaledLoss final : public BatchLoss {
   // Whether the base grows without bound in slope towards 0, like |x|.
   bool IsSteepAtZero() const {
     if (base_ == nullptr) return false;
-    constexpr double kAlmostZero = 1e-8;
+    constexpr double kAlmostZero = 1e-8, kQuarter = 0.25;
     double at_zero[3], beside[3];
     base_->Evaluate(kAlmostZero, at_zero);
-    base_->Evaluate(kFlat, beside);
+    base_->Evaluate(kQuarter, beside);
     return at_zero[1] > 2.0 * beside[1];
   }
 
-  // From now on the slope below half a sigma is that at half a sigma. For a
-  // loss that is steep at 0, this is the slope of the mean score over the
-  // residuals near 0, as a covariance needs it, instead of that of the few
-  // residuals that happen to be almost 0: the fitted ones.
-  void FlattenAtZero() { is_flat_ = true; }
+  // From now on the slope of squared norms below `limit`, sigmas^2, is that at
+  // the limit. For a loss that is steep at 0, this is the slope of the mean
+  // score over the residuals near 0, as a covariance needs it, instead of that
+  // of the few residuals that happen to be almost 0: the fitted ones.
+  void FlattenBelow(double limit) { flat_ = limit; }
 
   void Evaluate(double s, double rho[3]) const override {
-    if (is_flat_ && s < kFlat * scale2_) {
+    if (s < flat_ * scale2_) {
       double beside[3];
-      base_->Evaluate(kFlat, beside);
+      base_->Evaluate(flat_, beside);
       rho[1] = factor_ * beside[1];
       rho[0] = rho[1] * s;
       rho[2] = 0.0;
@@ -133,7 +133,7 @@ class ScaledLoss final : public BatchLoss {
   }
 
   double Weigh(const double* s, int n, double* weights) const override {
-    if (is_flat_) {
+    if (flat_ > 0.0) {
       double sum = 0.0, rho[3];
       for (int i = 0; i < n; ++i) {
         Evaluate(s[i], rho);
@@ -155,8 +155,7 @@ class ScaledLoss final : public BatchLoss {
   const ceres::LossFunction* base_;
   double scale2_;
   double factor_;
-  bool is_flat_ = false;
-  static constexpr double kFlat = 0.25;  // of the squared norm, sigmas^2
+  double flat_ = 0.0;  // see FlattenBelow
 };
 
 }  // namespace rgbd_pose

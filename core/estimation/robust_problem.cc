@@ -92,7 +92,7 @@ bool RobustProblem::FlattenLosses() {
   bool has_steep = false;
   for (RobustTerm& term : terms_) {
     if (!term.scaled.IsSteepAtZero()) continue;
-    term.scaled.FlattenAtZero();
+    term.scaled.FlattenBelow(ChiSquaredMedian(term.cost->degrees_of_freedom()));
     has_steep = true;
   }
   return has_steep;

@@ -63,8 +63,10 @@ class RobustProblem {
   // Sets all losses to `width` times their widths at the current scales.
   void SetLosses(double width);
 
-  // ScaledLoss::FlattenAtZero for losses that are steep there, until the next
-  // SetLosses. Returns false if there are none.
+  // ScaledLoss::FlattenBelow the median of the noise's squared norms, for
+  // losses that are steep at zero, until the next SetLosses: few matches fit so
+  // many residuals exactly that their weights tell nothing. Returns false if no
+  // loss is steep.
   bool FlattenLosses();
 
   void AddTo(Assembly assembly, const LinearizationPoint& origin, double* x,

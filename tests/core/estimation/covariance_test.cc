@@ -144,6 +144,38 @@ TEST(CovarianceOfSteepLossesTest, FittedResidualsAreNotCertain) {
   }
 }
 
+// Few matches fit so many residuals exactly that the weights of these must not
+// count as information either.
+TEST(CovarianceOfSteepLossesTest, IsHonestForFewMatches) {
+  struct Setting {
+    const char* cost;
+    const char* loss;
+    int matches;
+  };
+  for (const Setting& setting : {Setting{"bidirectional_point", "l1", 3},
+                                 {"bidirectional_point", "lp", 3},
+                                 {"reprojection", "l1", 4},
+                                 {"reprojection", "lp", 6}}) {
+    Estimator estimator({}, MakeRobustCosts(setting.cost, setting.loss));
+    double nees = 0.0;
+    int ok = 0, wrong = 0;
+    for (int seed = 0; seed < kTrials; ++seed) {
+      RandomWorld world(7000 + seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      const MotionEstimate estimate =
+          estimator.Estimate(world.Matches(setting.matches, 0.0, truth));
+      if (!estimate.ok()) continue;
+      const double chi_squared = Nees(estimate, truth);
+      nees += chi_squared / 6.0;
+      ++ok;
+      wrong += chi_squared > 40.9;  // as rare as five sigmas
+    }
+    EXPECT_GT(ok, kTrials / 3) << setting.cost << " " << setting.loss;
+    EXPECT_LT(nees / ok, 1.2) << setting.cost << " " << setting.loss;
+    EXPECT_LE(wrong, ok / 200) << setting.cost << " " << setting.loss;
+  }
+}
+
 // Under Huber's loss many gross outliers pull the motion away from all others
 // by more than its covariance says; with few of them, or symmetric ones, not.
 TEST(OutliersThatPullTest, AreNotOk) {
