@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "core/estimation/residual_jacobian.h"
 #include "core/util/quantile.h"
 #include "core/util/small_matrix.h"
 
@@ -67,6 +69,25 @@ class InliersOnly final : public ceres::LossFunction {
  private:
   double limit_;  // of the squared norm
 };
+
+// The same for a cost that has another limit for each match.
+void AddInliers(const RobustTerm& term, const Rigid3d& cur_from_prev,
+                NormalEquations* sum) {
+  const ResidualJacobian jacobian =
+      DifferenceJacobian(*term.cost, cur_from_prev);
+  std::vector<double> residuals;
+  term.cost->Residuals(DerivativesAt(cur_from_prev), &residuals);
+  const int rows = term.cost->num_residuals();
+  for (size_t k = 0; k < term.norms.size(); ++k) {
+    const double limit = term.cost->InlierLimit(static_cast<int>(k));
+    if (term.norms[k] > term.scale * term.scale * limit) continue;
+    const size_t first = k * rows;
+    const auto J = jacobian.middleRows(static_cast<Eigen::Index>(first), rows);
+    sum->hessian += J.transpose() * J;
+    sum->gradient +=
+        J.transpose() * Eigen::Map<Eigen::VectorXd>(&residuals[first], rows);
+  }
+}
 
 // Whether far outliers pull as much as residuals of 3 sigmas, as under Huber's
 // loss.
@@ -240,27 +261,28 @@ MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& problem,
 // With the sums H and g of the inliers alone, these would move the motion by
 // -H^-1 g.
 double CovarianceAccumulator::PullOfOutliers(
-    const RobustProblem& problem, const MotionDerivatives& motion,
+    const RobustProblem& problem, const Rigid3d& cur_from_prev,
     const MotionMatrix& covariance) const {
-  const auto limit = [](const RobustTerm& term) {
-    const int p = term.cost->degrees_of_freedom();
-    return term.scale * term.scale * ChiSquared99(p);
-  };
-  // Pixels at edges and of hidden surfaces disagree in every pair. Costs that
-  // are not whitened have another limit for each match.
-  const auto pulls = [&](const RobustTerm& term) {
+  // Pixels at edges and of hidden surfaces disagree in every pair.
+  const auto pulls = [](const RobustTerm& term) {
     const std::vector<int>& matches = term.cost->matches();
-    return term.has_scale() && term.cost->is_whitened() && !matches.empty() &&
-           matches.front() >= 0 && PullsAtAnyDistance(term.scaled, term.scale);
+    return term.has_scale() && !matches.empty() && matches.front() >= 0 &&
+           PullsAtAnyDistance(term.scaled, term.scale);
   };
   const auto& terms = problem.terms();
   if (std::none_of(terms.begin(), terms.end(), pulls)) return 0.0;
+  const MotionDerivatives motion = DerivativesAt(cur_from_prev);
   NormalEquations inliers;
   for (const RobustTerm& term : terms) {
-    const InliersOnly only(limit(term));
-    const bool is_cut = term.has_scale() && term.cost->is_whitened();
-    term.cost->Linearise(motion, is_cut ? &only : term.scaled_or_null(),
-                         &inliers);
+    if (!term.has_scale()) {
+      term.cost->Linearise(motion, term.scaled_or_null(), &inliers);
+    } else if (term.cost->is_whitened()) {
+      const int p = term.cost->degrees_of_freedom();
+      const InliersOnly only(term.scale * term.scale * ChiSquared99(p));
+      term.cost->Linearise(motion, &only, &inliers);
+    } else {
+      AddInliers(term, cur_from_prev, &inliers);
+    }
   }
   const MotionVector away = inliers.hessian.ldlt().solve(inliers.gradient);
   return away.dot(covariance.ldlt().solve(away));

@@ -7,6 +7,7 @@
 #include "core/estimation/motion_estimate.h"
 #include "core/estimation/robust_problem.h"
 #include "core/geometry/motion.h"
+#include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
 
@@ -85,7 +86,7 @@ class CovarianceAccumulator {
   // inliers pull the motion away from where the others alone would have it. 0
   // for losses under which large residuals hardly pull, and for pixels.
   double PullOfOutliers(const RobustProblem& problem,
-                        const MotionDerivatives& motion,
+                        const Rigid3d& cur_from_prev,
                         const MotionMatrix& covariance) const;
 
   // Chi^2 of six degrees of freedom of the difference between what priors say

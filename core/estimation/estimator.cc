@@ -162,7 +162,7 @@ class Estimator::Impl {
       return;
     }
     out_->covariance = shares_.Covariance(terms_, motion, degeneracy.inverse);
-    out_->reason = Contradiction(motion);
+    out_->reason = Contradiction();
     if (!out_->reason.empty()) {
       out_->status = EstimateStatus::kInconsistent;
     } else if (!minimiser_.converged()) {
@@ -177,7 +177,7 @@ class Estimator::Impl {
   }
 
   // What speaks against the motion, or empty.
-  std::string Contradiction(const MotionDerivatives& motion) {
+  std::string Contradiction() {
     const int used = terms_.num_used();
     const double share = static_cast<double>(out_->num_inliers) / used;
     const auto agreeing = [&] {
@@ -192,7 +192,7 @@ class Estimator::Impl {
     if (shares_.FalseAlarmsOf(terms_) > options_.max_false_alarms) {
       return agreeing() + ", as many as wrong ones may by chance";
     }
-    if (shares_.PullOfOutliers(terms_, motion, out_->covariance) >
+    if (shares_.PullOfOutliers(terms_, out_->cur_from_prev, out_->covariance) >
         kOneInTwoHundred) {
       return "matches that disagree pull the motion away from the others; a "
              "loss such as tukey leaves them out";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/estimation/chance_agreement.h"
+#include "core/estimation/residual_jacobian.h"
 #include "core/util/quantile.h"
 #include "core/util/small_matrix.h"
 
@@ -19,28 +20,6 @@ constexpr double kShortLever = 0.4;
 
 // Chi^2 of six degrees of freedom that is as rare as five sigmas.
 constexpr double kFiveSigmas = 40.9;
-
-using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6>;
-
-// Of all residuals, block by block, by [omega C]. Differences: only the lengths
-// of levers matter, and costs give no derivatives of single blocks.
-Jacobian ResidualJacobian(const MotionCost& cost, const Rigid3d& motion) {
-  constexpr double kStep = 1e-6;  // rad and m
-  const LinearizationPoint origin(motion);
-  std::vector<double> here, moved;
-  cost.Residuals(DerivativesAt(motion), &here);
-  const auto rows = static_cast<Eigen::Index>(here.size());
-  Jacobian jacobian(rows, 6);
-  for (int column = 0; column < 6; ++column) {
-    MotionVector x = MotionVector::Zero();
-    x[column] = kStep;
-    cost.Residuals(origin.DerivativesAt(x.data()), &moved);
-    jacobian.col(column) = (Eigen::Map<Eigen::VectorXd>(moved.data(), rows) -
-                            Eigen::Map<Eigen::VectorXd>(here.data(), rows)) /
-                           kStep;
-  }
-  return jacobian;
-}
 
 // 99 % of the squared norms of inliers of block k are below this.
 double SquaredLimit(const RobustTerm& term, size_t k) {
@@ -70,7 +49,7 @@ MotionMatrix HiddenErrorsOf(const RobustTerm& term,
   if (beyond.empty() || agreeing == 0) return sum;
   const double odds = static_cast<double>(beyond.size()) / agreeing;
   const double median = UpperMedian(&beyond);
-  const Jacobian all = ResidualJacobian(*term.cost, cur_from_prev);
+  const ResidualJacobian all = DifferenceJacobian(*term.cost, cur_from_prev);
   const int rows = term.cost->num_residuals();
   for (size_t k = 0; k < term.norms.size(); ++k) {
     if (term.norms[k] > SquaredLimit(term, k)) continue;

@@ -203,6 +203,25 @@ TEST(OutliersThatPullTest, AreNotOk) {
   }
 }
 
+// A cost that is not whitened has another limit for each match. Three of ten
+// matches are of an object that moves by 10 cm.
+TEST(OutliersThatPullTest, AreNoticedByACostThatIsNotWhitened) {
+  for (const char* loss : {"huber", "fair", "tukey"}) {
+    Estimator estimator({}, MakeRobustCosts("point_to_point", loss));
+    for (int seed = 0; seed < 20; ++seed) {
+      RandomWorld world(seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      const Rigid3d moved(Eigen::Quaterniond::Identity(), {0.1, 0.0, 0.0});
+      Correspondences matches = world.Matches(210, 0.0, truth);
+      const Correspondences wrong = world.Matches(90, 0.0, moved * truth);
+      for (const Match& match : wrong) matches.Add(match.prev, match.cur);
+      const MotionEstimate estimate = estimator.Estimate(matches);
+      EXPECT_EQ(estimate.ok(), loss == std::string("tukey"))
+          << loss << ", seed " << seed << ": " << estimate.reason;
+    }
+  }
+}
+
 // A prior with a wrong mean and no loss moves the estimate by many sigmas of
 // the matches, or is moved by many of its own. (A prior that is more exact than
 // the matches by far, so that they do not contradict it, cannot be noticed.)
