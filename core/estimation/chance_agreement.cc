@@ -7,7 +7,8 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kMotionRows = 6.0;
+// The logarithm of a number of false alarms that is low enough.
+constexpr double kProof = -36.0;
 
 // Wrong matches are rarely nearer, in limits: at 3 m a Kinect's is 5 cm.
 constexpr double kLeastExtent = 10.0;
@@ -22,7 +23,8 @@ double LogChoices(double n, double k) {
 
 }  // namespace
 
-double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements) {
+double FalseAlarms(double limit, int parameters,
+                   std::vector<MatchAgreement>* agreements) {
   std::vector<MatchAgreement>& all = *agreements;
   double least = std::numeric_limits<double>::infinity();
   if (all.empty()) return least;
@@ -44,7 +46,7 @@ double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements) {
           ? kLeastExtent
           : ExtentOfWrong((end + (all.end() - end) / 2)->width, rows);
   const double n = static_cast<double>(all.size());
-  const double needed = std::ceil(kMotionRows / rows);
+  const double needed = std::ceil(parameters / rows);
   for (double k = static_cast<double>(end - all.begin()); k > needed; --k) {
     const double width =
         std::max(all[static_cast<size_t>(k) - 1].width, kLeastWidth);
@@ -53,7 +55,7 @@ double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements) {
         rows * (k - needed) * std::log(std::min(width / extent, 1.0));
     least = std::min(least, alarms);
     // All of the larger sets of many matches prove more than enough.
-    if (least < -kMotionRows * kMotionRows) break;
+    if (least < kProof) break;
   }
   return std::exp(least);
 }

@@ -16,13 +16,15 @@ struct MatchAgreement {
 //
 //   (n - m) C(n, k) C(k, m) (w / R)^(rows (k - m)),
 //
-// for the k best of n matches, the m of them that six rows determine, their
+// for the k best of n matches, the m of them that determine six rows, their
 // width w, and the extent R of the residuals of wrong matches: as large as
 // those of the matches that do not agree, and at least ten times the limit.
 // Rows are those of the match that has the fewest. Infinite if no match is
 // left to confirm a motion. `agreements`, whose order changes, has all matches
-// that are used; those up to `limit` agree.
-double FalseAlarms(double limit, std::vector<MatchAgreement>* agreements);
+// that are used; those up to `limit` agree. `parameters`: how many of the six
+// the matches determine, where a prior determines the others.
+double FalseAlarms(double limit, int parameters,
+                   std::vector<MatchAgreement>* agreements);
 
 // R of FalseAlarms, in limits: how far the residuals of wrong matches extend.
 // `median_width` is that of the matches that do not agree, `rows` their rows.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/estimation/degeneracy.h"
 #include "core/estimation/residual_jacobian.h"
 #include "core/util/quantile.h"
 #include "core/util/small_matrix.h"
@@ -192,11 +193,19 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
       std::count(estimate->is_inlier.begin(), estimate->is_inlier.end(), true));
 }
 
-double CovarianceAccumulator::FalseAlarmsOf(const RobustProblem& problem) {
-  double scale = 0.0;
+double CovarianceAccumulator::FalseAlarmsOf(const RobustProblem& problem,
+                                            const MotionMatrix& inverse,
+                                            double max_standard_deviation) {
+  double scale = 0.0, determined = 0.0;
+  MotionMatrix priors = MotionMatrix::Zero();
   agreements_.clear();
-  for (const RobustTerm& term : problem.terms()) {
-    if (!term.has_scale()) return 0.0;
+  for (size_t i = 0; i < shares_.size(); ++i) {
+    const RobustTerm& term = problem.terms()[i];
+    if (!term.has_scale()) {
+      priors += shares_[i].hessian;
+      continue;
+    }
+    determined += (inverse * shares_[i].hessian).trace();
     scale = std::max(scale, term.scale);
     const size_t step = 1 + term.norms.size() / kMostCandidates;
     for (size_t k = 0; k < term.norms.size(); k += step) {
@@ -207,7 +216,13 @@ double CovarianceAccumulator::FalseAlarmsOf(const RobustProblem& problem) {
       agreements_.push_back({std::sqrt(term.norms[k] / limit), p});
     }
   }
-  return FalseAlarms(scale, &agreements_);
+  // Agreement with priors confirms as well, if it is one in all directions.
+  if (!priors.isZero() &&
+      !FindDegeneracy(priors, 0.0, max_standard_deviation).is_degenerate()) {
+    return 0.0;
+  }
+  const int parameters = static_cast<int>(std::lround(determined));
+  return parameters > 0 ? FalseAlarms(scale, parameters, &agreements_) : 0.0;
 }
 
 NormalEquations CovarianceAccumulator::Linearise(

@@ -69,9 +69,13 @@ class CovarianceAccumulator {
   // Fills weights, inliers and residual norms, of one entry per match.
   void JudgeMatches(const RobustProblem& problem, MotionEstimate* estimate);
 
-  // FalseAlarms of the matches that agree with the motion. 0 if anything else
-  // than matches, such as pixels or a prior, determines it, too.
-  double FalseAlarmsOf(const RobustProblem& problem);
+  // FalseAlarms of the matches that agree with the motion, of as many
+  // parameters as they determine. 0 if pixels determine it, too, or if priors
+  // alone do, within this standard deviation (rad and m). `inverse` is the
+  // inverse of the whole Hessian.
+  double FalseAlarmsOf(const RobustProblem& problem,
+                       const MotionMatrix& inverse,
+                       double max_standard_deviation);
 
   // RobustProblem::Linearise, minus MotionCost::AddSpuriousInformation.
   NormalEquations Linearise(const RobustProblem& problem,

@@ -162,7 +162,7 @@ class Estimator::Impl {
       return;
     }
     out_->covariance = shares_.Covariance(terms_, motion, degeneracy.inverse);
-    out_->reason = Contradiction();
+    out_->reason = Contradiction(degeneracy.inverse);
     if (!out_->reason.empty()) {
       out_->status = EstimateStatus::kInconsistent;
     } else if (!minimiser_.converged()) {
@@ -176,8 +176,8 @@ class Estimator::Impl {
                                      degeneracy.inverse, out_->covariance);
   }
 
-  // What speaks against the motion, or empty.
-  std::string Contradiction() {
+  // What speaks against the motion, or empty. `inverse`: of the Hessian.
+  std::string Contradiction(const MotionMatrix& inverse) {
     const int used = terms_.num_used();
     const double share = static_cast<double>(out_->num_inliers) / used;
     const auto agreeing = [&] {
@@ -189,7 +189,9 @@ class Estimator::Impl {
              " times as large as the noise model predicts";
     }
     if (share < options_.min_inlier_share) return "only " + agreeing();
-    if (shares_.FalseAlarmsOf(terms_) > options_.max_false_alarms) {
+    if (shares_.FalseAlarmsOf(terms_, inverse,
+                              options_.max_standard_deviation) >
+        options_.max_false_alarms) {
       return agreeing() + ", as many as wrong ones may by chance";
     }
     if (shares_.PullOfOutliers(terms_, out_->cur_from_prev, out_->covariance) >

@@ -19,8 +19,8 @@ Agreements operator+(Agreements a, const Agreements& b) {
   return a;
 }
 
-double AlarmsOf(Agreements agreements, double limit = 1.0) {
-  return FalseAlarms(limit, &agreements);
+double AlarmsOf(Agreements agreements, double limit = 1.0, int parameters = 6) {
+  return FalseAlarms(limit, parameters, &agreements);
 }
 
 // Six rows fit some motion exactly, however wrong they are.
@@ -39,6 +39,14 @@ TEST(FalseAlarmsTest, FollowsItsFormula) {
   const double extent = 14.0 * std::sqrt(2.0);
   EXPECT_NEAR(AlarmsOf(some), (5 - 3) * 5.0 * 4.0 * std::pow(0.5 / extent, 2),
               1e-12);
+}
+
+// Where a prior says how the camera turned, three rows fit any motion.
+TEST(FalseAlarmsTest, FewerParametersNeedFewerMatches) {
+  EXPECT_EQ(AlarmsOf(Repeated(3, 0.5, 1), 1.0, 3),
+            std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(AlarmsOf(Repeated(5, 0.5, 1), 1.0, 3),
+              (5 - 3) * 10.0 * std::pow(0.5 / 10.0, 2), 1e-12);
 }
 
 // With a wide scale a few of many wrong matches agree, but few of them well.

@@ -254,6 +254,31 @@ TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
   ExpectSane(estimate);
 }
 
+// A gyroscope says how the camera turned, and half of a few matches are wrong:
+// what these say on the translation must be confirmed, as without a prior.
+TEST(DegenerateScenesTest, APriorOfTheRotationDoesNotConfirmWrongMatches) {
+  Estimator estimator(
+      {}, MakeRobustCosts("point_to_plane+motion_prior", "tukey,none"));
+  int right = 0, wrong = 0;
+  for (const int matches : {6, 15, 60}) {
+    for (int seed = 0; seed < 100; ++seed) {
+      RandomWorld world(3000 + seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      MotionPrior prior{truth, MotionMatrix::Zero()};
+      prior.information.topLeftCorner<3, 3>().setIdentity();
+      prior.information *= 1e6;  // 1 mrad
+      const MotionEstimate estimate = estimator.Estimate(
+          world.Matches(matches, 0.5, truth), Rigid3d(), &prior);
+      if (!estimate.ok()) continue;
+      const double chi_squared = SquaredMahalanobisDistance(
+          estimate.cur_from_prev, truth, estimate.covariance);
+      ++(chi_squared > 40.9 ? wrong : right);  // as rare as five sigmas
+    }
+  }
+  EXPECT_GT(right, 110);
+  EXPECT_LE(wrong, 1);
+}
+
 // Without any depth, the length of C is undetermined: the weak direction is C.
 TEST(DegenerateScenesTest, EpipolarAloneHasNoScale) {
   const char* names[] = {"translation along x", "translation along y",
