@@ -10,8 +10,9 @@
 namespace rgbd_pose {
 namespace {
 
-// Fewer residuals do not determine their spread.
-constexpr size_t kMinResidualsForScale = 10;
+// Fewer independent residuals do not determine their spread: six of them are
+// fitted, which makes the others small, too.
+constexpr int kMinResidualsForScale = 30;
 // This many determine it to 2 %. If there are more (pixels), one block out of
 // every two, three, ... is drawn at random: a fixed step could meet a pattern.
 constexpr size_t kMaxResidualsForScale = 2000;
@@ -164,6 +165,7 @@ double RobustProblem::EstimateScale(
     int group, const MotionDerivatives& motion,
     double (*scale)(std::vector<double>* residuals)) {
   values_.clear();
+  int independent = 0;
   for (const RobustTerm& term : terms_) {
     if (term.cost->scale_group() != group) continue;
     term.cost->Residuals(motion, &residuals_);
@@ -179,12 +181,13 @@ double RobustProblem::EstimateScale(
       const size_t i = first + random.Below(static_cast<uint32_t>(end - first));
       // Missing measurements of a match leave rows of zeros.
       if (term.cost->degrees()[i] < degrees) continue;
+      independent += degrees;
       for (int row = 0; row < rows; ++row) {
         values_.push_back(unit * residuals_[i * rows + row]);
       }
     }
   }
-  if (values_.size() < kMinResidualsForScale) return 1.0;
+  if (independent < kMinResidualsForScale) return 1.0;
   return std::clamp(scale(&values_), kMinScale, kMaxScale);
 }
 

@@ -182,6 +182,32 @@ TEST_P(EveryScaleTest, AHandfulOfMatchesHasADefinedEstimate) {
   }
 }
 
+// The residuals of few matches are small because the motion is fitted to them:
+// their spread is no scale.
+TEST_P(EveryScaleTest, IsHonestForFewMatches) {
+  constexpr int kTrials = 200;
+  for (const char* cost : {"reprojection", "bidirectional_point"}) {
+    EstimatorOptions options;
+    options.scale = FindNamed(ScaleEstimators(), GetParam())->estimate;
+    Estimator estimator(options, MakeRobustCosts(cost, "tukey"));
+    for (const int count : {5, 6, 8, 12}) {
+      int ok = 0, wrong = 0;
+      for (int seed = 0; seed < kTrials; ++seed) {
+        RandomWorld world(8000 + seed);
+        const Rigid3d truth = world.Motion(0.1, 0.1);
+        const MotionEstimate estimate =
+            estimator.Estimate(world.Matches(count, 0.0, truth));
+        if (!estimate.ok()) continue;
+        ++ok;
+        wrong += SquaredMahalanobisDistance(estimate.cur_from_prev, truth,
+                                            estimate.covariance) > 40.9;
+      }
+      EXPECT_GE(ok, 0.9 * kTrials) << cost << ", " << count << " matches";
+      EXPECT_LE(wrong, 2) << cost << ", " << count << " matches";
+    }
+  }
+}
+
 // 70 % of the matches are outliers, and the guess is far outside Tukey's width.
 // With graduation, nearly all of 100 motions of 0.1 rad and 0.1 m are found.
 TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
