@@ -132,6 +132,40 @@ TEST_F(CoarseStartTest, FindsTheMotionBetweenTwoFrames) {
   }
 }
 
+// A camera that starts to turn after a frame at rest, and depth exposed later
+// than colour: the velocity that depth would need is not known yet.
+TEST_F(CoarseStartTest, FindsTheMotionWhereDepthIsLateAndTheVelocityChanges) {
+  constexpr double kSomePx = 3.0;
+  const Frame later = dataset_.Read(18);
+  Frame cur = cur_;
+  cur.depth = later.depth;
+  cur.depth_shutter.offset = later.timestamp - cur.timestamp;
+  cur.twist = Twist();
+  const Rigid3d later_from_ref =
+      dataset_.WorldFromCam(18).Inverse() * dataset_.WorldFromCam(0);
+  ASSERT_GT(ErrorPx(later_from_ref), 2.0 * kSomePx) << "depth is not late";
+  const auto found = tracker_.AlignCoarsely(PreparedFrame(ref_),
+                                            PreparedFrame(cur), Rigid3d());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT(ErrorPx(*found), kSomePx);
+}
+
+// Gray levels come first there, but a view without any needs depth.
+TEST_F(CoarseStartTest, FindsTheMotionByDepthWhereGrayLevelsShowNothing) {
+  constexpr double kSomePx = 3.0;
+  Frame ref = ref_;
+  Frame cur = cur_;
+  for (Frame* frame : {&ref, &cur}) {
+    frame->gray = cv::Mat(frame->gray.size(), CV_8UC1, cv::Scalar(50));
+    frame->color_shutter.readout = 0.01;
+    frame->twist = Twist();
+  }
+  const auto found =
+      tracker_.AlignCoarsely(PreparedFrame(ref), PreparedFrame(cur), Rigid3d());
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT(ErrorPx(*found), kSomePx);
+}
+
 TEST_F(CoarseStartTest, SaysNothingOfTwoFramesThatShowNothing) {
   const auto align = [&](const Frame& prev, const Frame& cur) {
     return tracker_.AlignCoarsely(PreparedFrame(prev), PreparedFrame(cur),
