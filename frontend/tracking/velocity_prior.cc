@@ -67,8 +67,7 @@ std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
 }
 
 double VelocityPrior::SigmaAngular() const {
-  if (!measured.has_value()) return sigma_angular;
-  return std::min(sigma_angular, measured->sigma_angular);
+  return measured.has_value() ? measured->sigma_angular : sigma_angular;
 }
 
 double VelocityPrior::SigmaLinear() const {

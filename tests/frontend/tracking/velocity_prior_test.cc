@@ -59,6 +59,8 @@ TEST(VelocityPriorTest, AMeasuredTurnIsBelieved) {
   EXPECT_EQ(prior.Fused(expected).angular_acceleration,
             seen.angular_acceleration);
   EXPECT_EQ(prior.Fused(expected).linear, expected.linear);
+  // What history says of a change does not make a measured turn more certain.
+  EXPECT_EQ(prior.SigmaAngular(), 0.5);
   EXPECT_EQ(prior.SigmaLinear(), 0.02);
   prior.measured->sigma_linear = 0.01;
   ExpectNear(prior.Fused(expected), {seen.angular, {0.8 * 0.3, 0.0, 0.0}});
