@@ -80,7 +80,7 @@ std::optional<Rigid3d> DirectTracker::AlignCoarsely(
   if (!estimators_.coarse.has_value()) return std::nullopt;
   // Where depth is exposed at another time than gray levels, it contradicts
   // them as soon as the velocity changes. So gray levels alone come first.
-  if (!cur.IsOneMoment()) {
+  if (!cur.Timing().IsOneMoment()) {
     PreparedFrame gray = cur;
     gray.depth.release();
     const std::optional<Rigid3d> aligned =

@@ -146,6 +146,23 @@ TEST(ShutterTrackingTest, ACertainGuessDecidesWhatFollowsTheLastFrame) {
   EXPECT_GE(from_last, 2);
 }
 
+// The velocity changes so fast that where depth was exposed is predicted badly.
+TEST(ShutterTrackingTest, LaterDepthInAFastPan) {
+  constexpr int kCount = 40;  // up to 200 degrees/s
+  SyntheticOptions options = ShutterOptions("pan_tilt", {{}, {}, 0.015});
+  options.frames = kCount;
+  const SyntheticDataset dataset(options);
+  Odometry odometry({},
+                    MakeTracker("hybrid", PartsFor(dataset.camera().camera)));
+  Trajectory path;
+  for (int i = 0; i < kCount; ++i) {
+    const TrackedFrame tracked = odometry.Track(dataset.Read(i));
+    EXPECT_EQ(tracked.status, TrackingStatus::kOk) << i << tracked.reason;
+    path.push_back({tracked.timestamp, tracked.world_from_cam});
+  }
+  EXPECT_LT(Evaluate(path, dataset.ground_truth(), {}).ate.rmse, 0.003);
+}
+
 // Rotation (up to 38 degrees/s, almost in place) and translation along the
 // axes. In one of two directions, translation hides most of the shutter's
 // effect.
