@@ -250,6 +250,12 @@ int TrackAndWrite(const RunSettings& settings, const ProgramInfo& info,
   output.folder().Publish();
   if (!settings.save_map.empty()) {
     const auto save = [&] {
+      // Lost frames are segments of their own, which would only swell a map.
+      if (results.TrackedShare() < kMinTrackedShare &&
+          HasMap(settings.save_map)) {
+        return "map         not saved: most frames were lost; that in " +
+               settings.save_map + " stays as it was\n";
+      }
       SaveMap(settings.save_map, slam->Map());
       return "map in      " + settings.save_map + "\n";
     };

@@ -163,10 +163,14 @@ void RequireMapFolder(const std::string& folder) {
               [&] { RequireWritable((fs::path(folder) / kIndex).string()); });
 }
 
+bool HasMap(const std::string& folder) {
+  return PathExists((fs::path(folder) / kIndex).string());
+}
+
 KeyframeMap LoadMap(const std::string& folder) {
   const std::string path = (fs::path(folder) / kIndex).string();
   if (!PathExists(folder)) throw InputError(folder + ": no such folder");
-  if (!PathExists(path)) {
+  if (!HasMap(folder)) {
     throw InputError(folder +
                      ": contains no map (no map.txt); choose a folder that a "
                      "map was saved to");

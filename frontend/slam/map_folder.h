@@ -22,6 +22,9 @@ void SaveMap(const std::string& folder, const KeyframeMap& map);
 // Creates the folder. Throws as SaveMap would, but before a long computation.
 void RequireMapFolder(const std::string& folder);
 
+// Whether the folder contains a map, be it damaged.
+bool HasMap(const std::string& folder);
+
 // Loads a map with exactly the saved numbers and images. Throws InputError if
 // there is no map, a map of another version, or one that is damaged or lacks an
 // image. Another program may save to the folder at the same time.

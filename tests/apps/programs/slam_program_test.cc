@@ -117,6 +117,15 @@ TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   EXPECT_GT(from, 0);
   EXPECT_EQ(ReadTrajectory(folder_ / "again/trajectory_online.txt").size(),
             kSlamFrames - from);
+
+  // Nor does a run that fails swell a map with segments of single frames.
+  const RunResult lost = Map("lost",
+                             "--tracker=features --min_inliers=5000 "
+                             "--min_inliers_ok=5000 --load_map=" +
+                                 map + " --save_map=" + map);
+  EXPECT_EQ(lost.exit_code, 3);
+  EXPECT_THAT(lost.out, HasSubstr("not saved: most frames were lost"));
+  EXPECT_EQ(ReadTextFile(map + "/map.txt"), before);
 }
 
 }  // namespace
