@@ -13,7 +13,7 @@ def test_examples_run(sequence, tmp_path):
     (tmp_path / "sequence").symlink_to(sequence)
     page = (DOCS / "python.md").read_text()
     blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    assert len(blocks) == 8
+    assert len(blocks) == 7
     for name in ("own_problem.py", "slam.py"):
         blocks.append((DOCS / "examples" / name).read_text())
     for block in blocks:

@@ -40,7 +40,8 @@ TEST(GyroscopeOutputTest, SaysWhatWasLearnt) {
               1e-12);
   EXPECT_EQ(json.at("turns"), 0);
   EXPECT_EQ(FormatGyroscope(json),
-            "gyroscope   not used: images have shown too few turns\n");
+            "gyroscope   not used: there are no samples at the time of the "
+            "frames; do both use the same clock?\n");
   nlohmann::json sure = json;
   sure["doubt"] = "";
   EXPECT_EQ(FormatGyroscope(sure),
