@@ -138,6 +138,10 @@ class Minimiser {
     // 6 Jacobian is triangular; squaring it just restores the Hessian.
     solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     solver.logging_type = ceres::SILENT;
+    // Some damping always stays, 1e-14 of the Hessian. Without it the
+    // factorization fails where nothing determines the motion, and Ceres logs a
+    // warning.
+    solver.max_trust_region_radius = 1e14;
     solver.num_threads = 1;
     solver.max_num_iterations = max_iterations;
     solver.function_tolerance = 1e-9;

@@ -241,6 +241,23 @@ TEST(DegenerateScenesTest, WrongMatchesDoNotDetermineARotation) {
   }
 }
 
+// The status says it; Ceres would log a factorization that fails.
+TEST(DegenerateScenesTest, NothingIsLogged) {
+  testing::internal::CaptureStderr();
+  for (const std::string& cost : CostNames()) {
+    for (const char* loss : {"huber", "tukey", "l1"}) {
+      Estimator estimator({}, MakeRobustCosts(cost, loss));
+      for (const bool noise : {false, true}) {
+        for (const int count : {3, 4, 100}) {
+          estimator.Estimate(MatchesOnAStrip(count, 2.0, 0.0, noise));
+          estimator.Estimate(MatchesOnAPlane(count, 2.0, Rigid3d(), noise));
+        }
+      }
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 // Another cost may determine the directions that one cost leaves open.
 TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
   RandomWorld world(23);
