@@ -70,7 +70,7 @@ void LoadMaps(const ProgramSettings& settings, Slam* slam) {
         "--localise_only does not change the map; leave out --save_map");
   }
   for (const std::string& folder : folders) {
-    Located("--load_map=" + folder,
+    Located("--load_map",
             [&] { slam->Load(LoadMap(folder), settings.localise_only); });
   }
 }

@@ -186,6 +186,12 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
   const FrameRange range = ParseFrameRange(settings.frames);
   sequence.source = PartOf(OpenSource(settings.source, options), range);
   sequence.inputs.imu = sequence.source->imu();
+  if (sequence.inputs.imu.has_value() &&
+      !sequence.inputs.imu->calibration.cam_from_imu.has_value()) {
+    sequence.remarks.push_back(
+        "the mounting of the inertial sensor on the camera is not known "
+        "(T_cam_imu), so tracking cannot use it; give it with --imu=FILE");
+  }
   sequence.compares = settings.groundtruth != "none";
   if (sequence.compares) {
     FindTruth(settings, &sequence);

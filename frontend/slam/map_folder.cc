@@ -169,11 +169,11 @@ bool HasMap(const std::string& folder) {
 
 KeyframeMap LoadMap(const std::string& folder) {
   const std::string path = (fs::path(folder) / kIndex).string();
-  if (!PathExists(folder)) throw InputError(folder + ": no such folder");
   if (!HasMap(folder)) {
     throw InputError(folder +
-                     ": contains no map (no map.txt); choose a folder that a "
-                     "map was saved to");
+                     (PathExists(folder) ? ": contains no map (no map.txt)"
+                                         : ": no such folder") +
+                     "; choose a folder that a map was saved to");
   }
   for (;;) {
     const std::string text = ReadTextFile(path);

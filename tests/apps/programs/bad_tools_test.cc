@@ -149,7 +149,8 @@ TEST_F(BadInputTest, Maps) {
       RGBD_SLAM " --dataset={seq} --output={dir}/out --noreport ",
       {
           {"--localise_only", "--localise_only needs --load_map"},
-          {"--load_map=nowhere", "--load_map=nowhere: "},
+          {"--load_map=nowhere",
+           "--load_map: nowhere: no such folder; choose a "},
           {"--load_map=nowhere --calibrate", "--calibrate changes the camera"},
           {"--max_pairs=0", "max_pairs must be at least 1"},
           {"--save_map={dir}/out", "--save_map: must be another folder than "},

@@ -77,6 +77,10 @@ TEST_F(OdometryProgramTest, FindsGravityWhereThereAreInertialSamples) {
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(gravity.at("up")[axis].get<double>(), up[axis], 0.005);
   }
+  EXPECT_EQ(short_run.err.find("mounting"), std::string::npos);
+  std::filesystem::remove(folder_ / "shaken/imu.yaml");
+  EXPECT_THAT(Run(track + " --frames=0-20").err,
+              HasSubstr("the mounting of the inertial sensor"));
 }
 
 TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
