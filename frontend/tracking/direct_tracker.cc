@@ -76,23 +76,8 @@ void DirectTracker::MoveReference(const PreparedFrame& frame,
 
 std::optional<Rigid3d> DirectTracker::AlignCoarsely(
     const PreparedFrame& prev, const PreparedFrame& cur,
-    const Rigid3d& cur_from_prev_start) {
+    const Rigid3d& cur_from_prev_start, bool /*has_shutter*/) {
   if (!estimators_.coarse.has_value()) return std::nullopt;
-  // Where depth is exposed at another time than gray levels, it contradicts
-  // them as soon as the velocity changes. So gray levels alone come first.
-  if (!cur.Timing().IsOneMoment()) {
-    PreparedFrame gray = cur;
-    gray.depth.release();
-    const std::optional<Rigid3d> aligned =
-        AlignOnce(prev, gray, cur_from_prev_start);
-    if (aligned.has_value()) return aligned;
-  }
-  return AlignOnce(prev, cur, cur_from_prev_start);
-}
-
-std::optional<Rigid3d> DirectTracker::AlignOnce(
-    const PreparedFrame& prev, const PreparedFrame& cur,
-    const Rigid3d& cur_from_prev_start) {
   FrameView view = ViewFrame(prev, prev.Derived<SmoothPyramid>().levels,
                              images_.camera, images_.depth.noise);
   Estimate(view, cur, cur_from_prev_start,

@@ -39,9 +39,10 @@ class DirectTracker final : public Tracker {
   void MoveReference(const PreparedFrame& frame,
                      const Rigid3d& reference_from_stamp,
                      Reference* reference) const override;
-  std::optional<Rigid3d> AlignCoarsely(
-      const PreparedFrame& prev, const PreparedFrame& cur,
-      const Rigid3d& cur_from_prev_start) override;
+  std::optional<Rigid3d> AlignCoarsely(const PreparedFrame& prev,
+                                       const PreparedFrame& cur,
+                                       const Rigid3d& cur_from_prev_start,
+                                       bool has_shutter) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
   void TrackAgain(const Reference& reference, const PreparedFrame& frame,
@@ -58,10 +59,6 @@ class DirectTracker final : public Tracker {
   const FrontendOptions& images() const override { return images_; }
 
  private:
-  // AlignCoarsely with gray levels and, unless it is empty, depth of `cur`.
-  std::optional<Rigid3d> AlignOnce(const PreparedFrame& prev,
-                                   const PreparedFrame& cur,
-                                   const Rigid3d& cur_from_prev_start);
   // `by_features`: their matches are used as well; null: only pixels.
   void Estimate(const FrameView& prev, const PreparedFrame& frame,
                 const Rigid3d& start, const MotionPrior& prior,

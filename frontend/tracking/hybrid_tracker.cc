@@ -70,6 +70,21 @@ void HybridTracker::MoveReference(const PreparedFrame& frame,
   }
 }
 
+std::optional<Rigid3d> HybridTracker::AlignCoarsely(
+    const PreparedFrame& prev, const PreparedFrame& cur,
+    const Rigid3d& cur_from_prev_start, bool has_shutter) {
+  // Depth exposed at another time than gray levels contradicts them as soon as
+  // the velocity changes. So gray levels alone come first.
+  if (has_shutter) {
+    PreparedFrame gray = cur;
+    gray.depth.release();
+    const std::optional<Rigid3d> aligned =
+        direct_->AlignCoarsely(prev, gray, cur_from_prev_start, has_shutter);
+    if (aligned.has_value()) return aligned;
+  }
+  return direct_->AlignCoarsely(prev, cur, cur_from_prev_start, has_shutter);
+}
+
 void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {

@@ -30,11 +30,10 @@ class HybridTracker final : public Tracker {
   void MoveReference(const PreparedFrame& frame,
                      const Rigid3d& reference_from_stamp,
                      Reference* reference) const override;
-  std::optional<Rigid3d> AlignCoarsely(
-      const PreparedFrame& prev, const PreparedFrame& cur,
-      const Rigid3d& cur_from_prev_start) override {
-    return direct_->AlignCoarsely(prev, cur, cur_from_prev_start);
-  }
+  std::optional<Rigid3d> AlignCoarsely(const PreparedFrame& prev,
+                                       const PreparedFrame& cur,
+                                       const Rigid3d& cur_from_prev_start,
+                                       bool has_shutter) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
   void TrackAgain(const Reference& reference, const PreparedFrame& frame,

@@ -91,7 +91,8 @@ std::optional<Rigid3d> Odometry::AlignToLast(
   seen.twist = last->frame.twist;
   return tracker_->AlignCoarsely(
       last->frame, seen,
-      prediction.has_value() ? prediction->cur_from_prev : Expected());
+      prediction.has_value() ? prediction->cur_from_prev : Expected(),
+      state_.has_shutter);
 }
 
 Rigid3d Odometry::Expected() const {

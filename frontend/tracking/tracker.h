@@ -188,10 +188,11 @@ class Tracker {
                              Reference* reference) const = 0;
 
   // Aligns coarse images of two frames in a row. The motion may be some pixels
-  // off. Returns nothing if the images do not determine it.
+  // off. Returns nothing if the images do not determine it. `has_shutter`:
+  // depth and rows were exposed at other times than the stamps.
   virtual std::optional<Rigid3d> AlignCoarsely(
       const PreparedFrame& /*prev*/, const PreparedFrame& /*cur*/,
-      const Rigid3d& /*cur_from_prev_start*/) {
+      const Rigid3d& /*cur_from_prev_start*/, bool /*has_shutter*/) {
     return std::nullopt;
   }
 

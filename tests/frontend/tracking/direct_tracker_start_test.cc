@@ -120,7 +120,7 @@ TEST_F(CoarseStartTest, FindsTheMotionBetweenTwoFrames) {
   constexpr double kSomePx = 3.0;
   const auto align = [&](const Rigid3d& start) {
     return tracker_.AlignCoarsely(PreparedFrame(ref_), PreparedFrame(cur_),
-                                  start);
+                                  start, false);
   };
   const auto found = align(Rigid3d());
   ASSERT_TRUE(found.has_value());
@@ -144,8 +144,9 @@ TEST_F(CoarseStartTest, FindsTheMotionWhereDepthIsLateAndTheVelocityChanges) {
   const Rigid3d later_from_ref =
       dataset_.WorldFromCam(18).Inverse() * dataset_.WorldFromCam(0);
   ASSERT_GT(ErrorPx(later_from_ref), 2.0 * kSomePx) << "depth is not late";
-  const auto found = tracker_.AlignCoarsely(PreparedFrame(ref_),
-                                            PreparedFrame(cur), Rigid3d());
+  const auto found = MakeTracker("hybrid", PartsFor(camera_))
+                         ->AlignCoarsely(PreparedFrame(ref_),
+                                         PreparedFrame(cur), Rigid3d(), true);
   ASSERT_TRUE(found.has_value());
   EXPECT_LT(ErrorPx(*found), kSomePx);
 }
@@ -160,8 +161,9 @@ TEST_F(CoarseStartTest, FindsTheMotionByDepthWhereGrayLevelsShowNothing) {
     frame->color_shutter.readout = 0.01;
     frame->twist = Twist();
   }
-  const auto found =
-      tracker_.AlignCoarsely(PreparedFrame(ref), PreparedFrame(cur), Rigid3d());
+  const auto found = MakeTracker("hybrid", PartsFor(camera_))
+                         ->AlignCoarsely(PreparedFrame(ref), PreparedFrame(cur),
+                                         Rigid3d(), true);
   ASSERT_TRUE(found.has_value());
   EXPECT_LT(ErrorPx(*found), kSomePx);
 }
@@ -169,7 +171,7 @@ TEST_F(CoarseStartTest, FindsTheMotionByDepthWhereGrayLevelsShowNothing) {
 TEST_F(CoarseStartTest, SaysNothingOfTwoFramesThatShowNothing) {
   const auto align = [&](const Frame& prev, const Frame& cur) {
     return tracker_.AlignCoarsely(PreparedFrame(prev), PreparedFrame(cur),
-                                  Rigid3d());
+                                  Rigid3d(), false);
   };
   const auto black = [](Frame frame) {
     frame.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));
@@ -184,18 +186,18 @@ TEST_F(CoarseStartTest, SaysNothingOfTwoFramesThatShowNothing) {
 
 TEST_F(CoarseStartTest, EveryTrackerWithPixelsAlignsTwoFrames) {
   const PreparedFrame ref(ref_), cur(cur_);
-  const auto expected = tracker_.AlignCoarsely(ref, cur, Rigid3d());
+  const auto expected = tracker_.AlignCoarsely(ref, cur, Rigid3d(), false);
   ASSERT_TRUE(expected.has_value());
   for (const std::string& name : TrackerNames()) {
     const auto found = MakeTracker(name, PartsFor(camera_))
-                           ->AlignCoarsely(ref, cur, Rigid3d());
+                           ->AlignCoarsely(ref, cur, Rigid3d(), false);
     ASSERT_TRUE(found.has_value()) << name;
     EXPECT_EQ(found->translation, expected->translation) << name;
   }
   TrackerParts parts = PartsFor(camera_);
   parts.direct_estimators.reset();
   EXPECT_FALSE(MakeTracker("features", std::move(parts))
-                   ->AlignCoarsely(ref, cur, Rigid3d())
+                   ->AlignCoarsely(ref, cur, Rigid3d(), false)
                    .has_value());
 }
 
