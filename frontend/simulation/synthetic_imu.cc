@@ -59,9 +59,13 @@ std::string SyntheticImuOptions::Check() const {
     return Format("rate_hz of the inertial sensor must be in (0, 1e5], not %g",
                   rate_hz);
   }
-  if (!bias.allFinite() || !std::isfinite(delay_s) ||
-      !cam_from_imu.IsFinite()) {
-    return "bias, delay and mounting of the inertial sensor must be finite";
+  if (!(gyro_limit > 0.0) || !(accel_limit > 0.0)) {
+    return "gyro_limit and accel_limit must be above 0";
+  }
+  if (!bias.allFinite() || !std::isfinite(delay_s) || !gyro_axes.allFinite() ||
+      !accel_axes.allFinite() || !cam_from_imu.IsFinite()) {
+    return "bias, delay, axes and mounting of the inertial sensor must be "
+           "finite";
   }
   return noise ? densities.Check() : "";
 }
@@ -85,10 +89,14 @@ std::vector<ImuSample> SimulateImu(
     const double stamp = from + static_cast<double>(k) / options.rate_hz;
     ImuSample sample = Exact(world_from_imu, stamp - options.delay_s);
     sample.stamp = stamp;
-    sample.gyro += bias.head<3>();
-    sample.gyro += white * noise.gyro_density * random.Next();
-    sample.accel += bias.tail<3>();
-    sample.accel += white * noise.accel_density * random.Next();
+    sample.gyro = options.gyro_axes * sample.gyro + bias.head<3>() +
+                  white * noise.gyro_density * random.Next();
+    sample.accel = options.accel_axes * sample.accel + bias.tail<3>() +
+                   white * noise.accel_density * random.Next();
+    sample.gyro =
+        sample.gyro.cwiseMin(options.gyro_limit).cwiseMax(-options.gyro_limit);
+    sample.accel = sample.accel.cwiseMin(options.accel_limit)
+                       .cwiseMax(-options.accel_limit);
     bias.head<3>() += walk * noise.gyro_walk * random.Next();
     bias.tail<3>() += walk * noise.accel_walk * random.Next();
     samples.push_back(sample);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,15 @@ struct SyntheticImuOptions {
   // How much later than the camera's clock its clock says, s: the sample with
   // stamp t is from t - delay_s.
   double delay_s = 0.0;
+
+  // What the axes of a perfect sensor are turned into: scale factors on the
+  // diagonal, misalignment beside it.
+  Eigen::Matrix3d gyro_axes = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d accel_axes = Eigen::Matrix3d::Identity();
+
+  // Larger values of an axis are cut off, rad/s and m/s^2.
+  double gyro_limit = std::numeric_limits<double>::infinity();
+  double accel_limit = std::numeric_limits<double>::infinity();
 
   // Why these options cannot be used; empty if they can.
   std::string Check() const;

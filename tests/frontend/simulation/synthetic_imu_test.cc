@@ -98,13 +98,17 @@ TEST(SyntheticImuTest, NoiseHasItsDensitiesAndBiasesWalk) {
             SimulateImu(still, 0.0, 2.0, options).back().accel);
 }
 
-TEST(SyntheticImuTest, ABiasIsAdded) {
+TEST(SyntheticImuTest, FaultsOfAxesAndRange) {
   SyntheticImuOptions options = Exact();
   options.bias << 0, 0, 0.5, 0, 0, 1.0;
+  options.accel_axes(2, 2) = 1.02;
+  options.accel_limit = 12.0;
   const auto still = [](double) { return Rigid3d(); };
   const auto samples = SimulateImu(still, 0.0, 0.0, options);
-  EXPECT_NEAR(samples[0].accel.z(), 9.81 + 1.0, 1e-6);
+  EXPECT_NEAR(samples[0].accel.z(), 1.02 * 9.81 + 1.0, 1e-6);
   EXPECT_NEAR(samples[0].gyro.z(), 0.5, 1e-9);
+  options.accel_limit = 10.0;
+  EXPECT_EQ(SimulateImu(still, 0.0, 0.0, options)[0].accel.z(), 10.0);
 }
 
 // The stream of a rendered sequence has the stamps and the motion of its
