@@ -1,4 +1,4 @@
-// Exports the results of a run to the format of another tool.
+// Exports the results of a run, or a map, to the format of another tool.
 
 #include <cstdio>
 
@@ -10,7 +10,7 @@ namespace rgbd_pose {
 namespace {
 
 struct ExportSettings {
-  std::string run, dataset, camera, to;
+  std::string run, map, dataset, camera, to;
   ExportOptions options;
 };
 
@@ -19,6 +19,9 @@ std::vector<Setting> Table(ExportSettings* settings) {
   std::vector<Setting> table = {
       {"run", kInput, "results folder of rgbd_odometry or rgbd_slam",
        &settings->run},
+      {"map", kInput,
+       "folder of a map (rgbd_slam --save_map), in place of a run",
+       &settings->map},
       {"dataset", kInput, "recording of the run, if it was moved",
        &settings->dataset},
       {"camera", kInput, "camera file of the run, if it was moved",
@@ -32,18 +35,25 @@ std::vector<Setting> Table(ExportSettings* settings) {
 }
 
 ProgramInfo Info(ExportSettings* settings) {
-  return {"rgbd_export",
-          "exports the results of a run to the formats of other tools.",
-          "rgbd_export --run=runs/fr1_room --to=mesh --output=room.glb",
-          {},
-          {Table(settings)}};
+  return {
+      "rgbd_export",
+      "exports the results of a run, or a map, to the formats of other tools.",
+      "rgbd_export --run=runs/fr1_room --to=mesh --output=room.glb",
+      {},
+      {Table(settings)}};
 }
 
 int Main(const ExportSettings& settings, const ProgramInfo& /*info*/) {
-  const auto& [folder, dataset, camera, to, options] = settings;
-  RequireFlag("run", folder);
+  const auto& [folder, map, dataset, camera, to, options] = settings;
+  RequireFlag("run or --map", folder + map);
   RequireFlag("to", to);
-  const FinishedRun run(folder, dataset, camera);
+  if (!map.empty() && !(folder + dataset + camera).empty()) {
+    throw InputError(
+        "--map: a map has its own images; leave out --run, --dataset and "
+        "--camera");
+  }
+  const FinishedRun run =
+      map.empty() ? FinishedRun(folder, dataset, camera) : MapAsRun(map);
   std::fputs(ExportRun(run, to, options).summary.c_str(), stdout);
   return kExitOk;
 }

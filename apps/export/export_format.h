@@ -14,11 +14,15 @@
 #include "frontend/fusion/cloud_fusion.h"
 #include "frontend/settings/sequence.h"
 #include "frontend/settings/settings.h"
+#include "frontend/slam/keyframe_map.h"
 
 namespace rgbd_pose {
 
-// A finished run of rgbd_odometry or rgbd_slam, read from its folder, or a path
-// that was tracked without them.
+// Stamps of files have 6 decimals: closer ones are the same, s.
+constexpr double kSameTime = 1e-5;
+
+// A finished run of rgbd_odometry or rgbd_slam, read from its folder, a path
+// that was tracked without them, or a map.
 struct FinishedRun {
   using Open = std::function<std::unique_ptr<FrameSource>()>;
 
@@ -33,8 +37,9 @@ struct FinishedRun {
   // colour. Throws InputError for a path without poses.
   FinishedRun(Trajectory path, Open open);
 
-  std::string folder;         // of its results; empty: none
-  Open open;                  // only without a folder
+  std::string folder;                      // of its results; empty: none
+  std::shared_ptr<const KeyframeMap> map;  // null if it is no map
+  Open open;                               // only without a folder
   SequenceSettings sequence;  // with which the recording was opened
   OdometrySettings odometry;  // with which it was tracked
 
@@ -52,6 +57,16 @@ struct FinishedRun {
   // is taken for level.
   Rigid3d level_from_world;
 };
+
+// The largest connected part of a map: the frames are its keyframes, numbered
+// by their ids. If two of them have the same stamp, as a map that several
+// recordings have made may have, stamps are counted from 0 s, a second apart.
+// Throws InputError for a folder without a map, and for an empty or damaged
+// one.
+FinishedRun MapAsRun(const std::string& folder);
+
+// As FinishedRun::level_from_world, from the direction of up in the world.
+Rigid3d LevelFromWorld(const Eigen::Vector3d& up);
 
 // User options of an export. Each format uses the options that concern it.
 struct ExportOptions {

@@ -69,7 +69,8 @@ WrittenExport ExportRun(const FinishedRun& run, const std::string& format,
     options.output =
         (std::filesystem::path(run.folder) / row.default_output).string();
   }
-  RequireOutside("output", options.output, run.sequence.dataset);
+  RequireOutside("output", options.output, run.sequence.dataset,
+                 run.map == nullptr ? "recording" : "map");
   std::string summary = row.write(run, options);
   return {options.output, std::move(summary)};
 }

@@ -21,9 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Trajectory files have 6 decimals.
-constexpr double kSameTime = 1e-5;  // s
-
 // Sets the settings of a table to the flags of a run, where it has them.
 void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
   for (const Setting& setting : table) {
@@ -55,21 +52,6 @@ std::vector<double> SegmentsOf(const fs::path& run, const CsvTable& frames) {
                      std::to_string(frames.size()) + "; repeat the run");
   }
   return table.Numbers("final_segment");
-}
-
-// As FinishedRun::level_from_world, from the direction of up in the world.
-Rigid3d LevelFromWorld(const Eigen::Vector3d& up) {
-  const Eigen::Vector3d down = -up.normalized();
-  // Ahead is z, the optical axis of the first camera; in an upright world y.
-  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ();
-  constexpr double kNearlyVertical = 0.9;
-  if (std::abs(ahead.dot(down)) > kNearlyVertical) {
-    ahead = Eigen::Vector3d::UnitY();
-  }
-  ahead = (ahead - ahead.dot(down) * down).normalized();
-  Eigen::Matrix3d rows;
-  rows << down.cross(ahead).transpose(), down.transpose(), ahead.transpose();
-  return Rigid3d(Eigen::Quaterniond(rows), Eigen::Vector3d::Zero());
 }
 
 // What metrics.json says of gravity in the world of a segment; nothing if it is
@@ -172,6 +154,20 @@ FinishedRun::FinishedRun(Trajectory path, Open open)
       segments(trajectory.size(), 0) {
   if (trajectory.empty()) throw InputError("the path has no poses");
   std::iota(frames.begin(), frames.end(), 0);
+}
+
+Rigid3d LevelFromWorld(const Eigen::Vector3d& up) {
+  const Eigen::Vector3d down = -up.normalized();
+  // Ahead is z, the optical axis of the first camera; in an upright world y.
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ();
+  constexpr double kNearlyVertical = 0.9;
+  if (std::abs(ahead.dot(down)) > kNearlyVertical) {
+    ahead = Eigen::Vector3d::UnitY();
+  }
+  ahead = (ahead - ahead.dot(down) * down).normalized();
+  Eigen::Matrix3d rows;
+  rows << down.cross(ahead).transpose(), down.transpose(), ahead.transpose();
+  return Rigid3d(Eigen::Quaterniond(rows), Eigen::Vector3d::Zero());
 }
 
 std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run) {

@@ -31,6 +31,19 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
   return graph;
 }
 
+std::string GraphAsText(const FinishedRun& run) {
+  if (run.map != nullptr) return FormatG2o(*run.map);
+  if (run.folder.empty()) {
+    throw InputError(
+        "g2o: a path alone has no measured motions; export the folder of a run "
+        "of rgbd_odometry or rgbd_slam");
+  }
+  const std::filesystem::path solved =
+      std::filesystem::path(run.folder) / "graph.g2o";
+  return std::filesystem::exists(solved) ? ReadTextFile(solved.string())
+                                         : FormatG2o(GraphOfFrames(run));
+}
+
 }  // namespace
 
 std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
@@ -67,16 +80,7 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
 }
 
 std::string ExportG2o(const FinishedRun& run, const ExportOptions& options) {
-  if (run.folder.empty()) {
-    throw InputError(
-        "g2o: a path alone has no measured motions; export the folder of a run "
-        "of rgbd_odometry or rgbd_slam");
-  }
-  const std::filesystem::path solved =
-      std::filesystem::path(run.folder) / "graph.g2o";
-  const std::string text = std::filesystem::exists(solved)
-                               ? ReadTextFile(solved.string())
-                               : FormatG2o(GraphOfFrames(run));
+  const std::string text = GraphAsText(run);
   WriteFileAtomically(options.output, text);
   return Format("%d vertices, %d edges in %s\n", Count("VERTEX_", text),
                 Count("EDGE_", text), options.output.c_str());

@@ -64,6 +64,14 @@ WrittenExport ExportPath(const Recording& recording,
   return ExportRun(FinishedRun(std::move(path), open), to, options);
 }
 
+WrittenExport ExportMap(const py::object& map, const std::string& to,
+                        const py::object& output, const py::kwargs& keywords) {
+  const ExportOptions options = OptionsFrom("export_map", output, keywords);
+  const std::string folder = PathFrom(map);
+  const ReleasedGil no_gil;
+  return ExportRun(MapAsRun(folder), to, options);
+}
+
 void BindWritten(py::module_* module) {
   py::class_<WrittenExport> written(*module, "Export",
                                     "What an export has written. It can be "
@@ -89,7 +97,7 @@ void BindExport(py::module_* module) {
   BindWritten(module);
   module->def(
       "export_formats", [] { return NamesOf(ExportFormats()); },
-      "Names of all formats for export_run and export_path.");
+      "Names of all formats for export_run, export_path and export_map.");
   ExportOptions defaults;
   const std::vector<Setting> table = ExportTable(&defaults);
   DefineWithSettings(module, "export_run", &ExportFolder, table, R"(
@@ -125,6 +133,17 @@ Returns an Export. Raises InputError for a path that is not of the recording, fo
 invalid arguments and if something cannot be read or written.)",
                      py::arg("recording").none(false), py::arg("trajectory"),
                      py::arg("to"), py::arg("output"));
+  DefineWithSettings(module, "export_map", &ExportMap, table, R"(
+Writes the largest connected part of a map for another tool, as rgbd_export does.
+Its images are the grey ones of its keyframes; "g2o" has all parts.
+
+map: the folder of the map, as Slam.save_map writes it.
+to: the format, one of export_formats().
+output: file or folder to write, outside the folder of the map.
+
+Returns an Export. Raises InputError for a folder without a map, for a damaged
+map, for invalid arguments and if something cannot be written.)",
+                     py::arg("map"), py::arg("to"), py::arg("output"));
 }
 
 }  // namespace rgbd_pose

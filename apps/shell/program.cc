@@ -276,21 +276,19 @@ std::string WithHome(const std::string& text) {
 }
 
 void RequireOutside(const std::string& flag, const std::string& folder,
-                    const std::string& recording) {
+                    const std::string& recording, const std::string& name) {
   std::error_code error;
   if (!std::filesystem::is_directory(recording, error)) {
     if (!std::filesystem::equivalent(folder, recording, error)) return;
-    throw InputError("--" + flag + "=" + folder +
-                     ": is the recording itself; choose another name");
+    throw InputError("--" + flag + "=" + folder + ": is the " + name +
+                     " itself; choose another name");
   }
   const auto below = std::filesystem::weakly_canonical(folder, error)
                          .lexically_relative(std::filesystem::weakly_canonical(
                              recording, error));
   if (below.empty() || *below.begin() == "..") return;
-  throw InputError("--" + flag + "=" + folder +
-                   ": is in the recording's own "
-                   "folder " +
-                   recording + "; choose one outside it");
+  throw InputError("--" + flag + "=" + folder + ": is in the " + name +
+                   "'s own folder " + recording + "; choose one outside it");
 }
 
 int AvailableCores() {

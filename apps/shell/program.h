@@ -88,7 +88,8 @@ std::string WithHome(const std::string& text);
 // Throws InputError if the folder or file of a flag is a recording or below it:
 // it would replace files of the recording, or be taken for one of them.
 void RequireOutside(const std::string& flag, const std::string& folder,
-                    const std::string& recording);
+                    const std::string& recording,
+                    const std::string& name = "recording");
 
 // Throws InputError if the folder of a flag is `other`, whose files would be
 // replaced or mixed with others.

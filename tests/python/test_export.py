@@ -86,6 +86,23 @@ def test_a_path_that_was_tracked_here(recording, tmp_path, monkeypatch):
     assert not os.listdir(), "files that nobody asked for"
 
 
+@pytest.mark.parametrize("name", ["mesh", "tum", "g2o"])
+def test_a_map_is_exported_as_by_the_program(name, sequence, tmp_path):
+    run_program(
+        "rgbd_slam", f"--dataset={sequence}", "--noreport",
+        f"--output={tmp_path / 'run'}", f"--save_map={tmp_path / 'map'}",
+    )
+    theirs, ours = tmp_path / "theirs.ply", tmp_path / "ours.ply"
+    run_program(
+        "rgbd_export", f"--map={tmp_path / 'map'}", f"--to={name}",
+        f"--output={theirs}", "--voxel=0.04",
+    )
+    rgbd_pose.export_map(tmp_path / "map", name, ours, **COARSE)
+    assert_same(ours, theirs)
+    with pytest.raises(rgbd_pose.InputError, match="map's own folder"):
+        rgbd_pose.export_map(tmp_path / "map", name, tmp_path / "map" / "x.ply")
+
+
 def test_a_name_of_its_own(run):
     written = rgbd_pose.export_run(run, "tum")
     assert written.path == str(run / "trajectory_tum.txt")

@@ -55,6 +55,7 @@ __all__ = [
     "evaluate_ate",
     "evaluate_rpe",
     "export_formats",
+    "export_map",
     "export_path",
     "export_run",
     "frontends",
