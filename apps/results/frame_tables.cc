@@ -112,8 +112,8 @@ std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder) {
   }
   const int size = static_cast<int>(frames.size());
   for (const RelativePose& edge : ReadEdges(folder)) {
-    if (std::min(edge.ref, edge.cur) < 0 ||
-        std::max(edge.ref, edge.cur) >= size) {
+    // A keyframe of a loaded map has a number below 0.
+    if (edge.cur < 0 || std::max(edge.ref, edge.cur) >= size) {
       throw InputError((folder / "edges.csv").string() + ": the motion from " +
                        std::to_string(edge.ref) + " to " +
                        std::to_string(edge.cur) +

@@ -24,8 +24,9 @@ inline constexpr char kCovarianceColumns[] =
 // frames.csv: a header and one row per input frame.
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);
 
-// edges.csv: a header and one row per edge: ref and cur (rows of frames.csv),
-// cur_from_ref (translation in m) and the upper triangle of its covariance.
+// edges.csv: a header and one row per edge: ref and cur (rows of frames.csv; a
+// ref below 0 is a keyframe of a loaded map), cur_from_ref (translation in m)
+// and the upper triangle of its covariance.
 std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames);
 
 // Read a run's edges from edges.csv, or its frames with timestamps, statuses

@@ -5,6 +5,16 @@
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
+namespace {
+
+// The true pose of a frame; nothing if it is not among `times` or unknown.
+std::optional<Rigid3d> TruePose(int frame, const std::vector<double>& times,
+                                const Trajectory& truth) {
+  if (frame < 0 || frame >= static_cast<int>(times.size())) return std::nullopt;
+  return InterpolatedPose(truth, times[frame]);
+}
+
+}  // namespace
 
 double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
                  const TruthNoise& noise) {
@@ -23,8 +33,8 @@ Consistency Judge(const std::vector<RelativePose>& edges,
   std::vector<double> shares;
   for (const RelativePose& edge : edges) {
     if (edge.covariance.isZero(0.0)) continue;  // no covariance
-    const std::optional<Rigid3d> ref = InterpolatedPose(truth, times[edge.ref]);
-    const std::optional<Rigid3d> cur = InterpolatedPose(truth, times[edge.cur]);
+    const std::optional<Rigid3d> ref = TruePose(edge.ref, times, truth);
+    const std::optional<Rigid3d> cur = TruePose(edge.cur, times, truth);
     if (!ref.has_value() || !cur.has_value()) continue;
     const double chi_square = ChiSquare(edge, cur->Inverse() * *ref, noise);
     // Negated to count invalid covariances (NaN) as wrong, too.

@@ -38,7 +38,8 @@ struct RunConsistency {
 };
 
 // Judges edges by the truth, interpolated at the `times` (s) of their frames.
-// Skips edges without a covariance or without the truth.
+// Skips edges without a covariance or without the truth, and those from what is
+// no frame of these: a keyframe of a map has a number below 0.
 Consistency Judge(const std::vector<RelativePose>& edges,
                   const std::vector<double>& times, const Trajectory& truth,
                   const TruthNoise& noise);

@@ -52,7 +52,7 @@ struct TrackedFrame {
   // frame is found in it, the edges of this frame connect both segments.
   int segment = 0;
 
-  int reference = -1;          // index of the reference frame; -1: none
+  int reference = -1;          // index of a frame; -1: none; below: of a map
   Rigid3d cur_from_reference;  // motion since the reference
   bool is_reference = false;   // became the reference of the next frames
   bool relocalised = false;    // found again among earlier references

@@ -93,5 +93,21 @@ TEST(FrameTablesTest, EdgesAreReadBackToTheirFrames) {
   ExpectInputError([&] { ReadFrames(path); }, {"the motion from 0 to 2"});
 }
 
+// In a run with a loaded map, frames are tracked against its keyframes as well.
+TEST(FrameTablesTest, MotionsSinceKeyframesOfALoadedMapAreReadBack) {
+  std::vector<TrackedFrame> frames(2);
+  RelativePose edge;
+  edge.ref = -86;
+  edge.cur = 1;
+  frames[1].edges = {edge};
+  const TempFolder folder;
+  const std::filesystem::path path = folder.path();
+  WriteFileAtomically((path / "frames.csv").string(), FormatFramesCsv(frames));
+  WriteFileAtomically((path / "edges.csv").string(), FormatEdgesCsv(frames));
+  const std::vector<TrackedFrame> read = ReadFrames(path);
+  ASSERT_EQ(read[1].edges.size(), 1u);
+  EXPECT_EQ(read[1].edges[0].ref, -86);
+}
+
 }  // namespace
 }  // namespace rgbd_pose

@@ -85,5 +85,17 @@ TEST(ConsistencyTest, CountsWhatIsBeyondFiveSigmas) {
   EXPECT_EQ(Judge(edges, times, truth, {}).count, 0);
 }
 
+// A frame that was tracked against a keyframe of a loaded map.
+TEST(ConsistencyTest, LeavesOutWhatIsNoFrame) {
+  const Trajectory truth = {{0.0, Rigid3d()}, {0.03, Rigid3d()}};
+  RelativePose edge;
+  edge.covariance = 1e-6 * MotionMatrix::Identity();
+  std::vector<RelativePose> edges(3, edge);
+  edges[0].cur = 1;
+  edges[1].ref = -500000000;
+  edges[2].cur = 2;
+  EXPECT_EQ(Judge(edges, {0.0, 0.03}, truth, {}).count, 1);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
