@@ -5,27 +5,27 @@
 namespace rgbd_pose {
 
 void ImuMerger::AddGyro(double stamp, const Eigen::Vector3d& gyro) {
-  Add(&gyro_, stamp, gyro);
+  gyro_.Add(stamp, gyro);
 }
 
 void ImuMerger::AddAccel(double stamp, const Eigen::Vector3d& accel) {
-  Add(&accel_, stamp, accel);
+  accel_.Add(stamp, accel);
 }
 
-void ImuMerger::Add(std::deque<Value>* stream, double stamp,
-                    const Eigen::Vector3d& value) {
-  if (!stream->empty() && !(stamp > stream->back().stamp)) return;
-  stream->push_back({stamp, value});
+void ImuMerger::Stream::Add(double stamp, const Eigen::Vector3d& value) {
+  if (!(stamp > last_stamp)) return;
+  last_stamp = stamp;
+  values.push_back({stamp, value});
 }
 
 std::vector<ImuSample> ImuMerger::Take() {
   std::vector<ImuSample> samples;
-  while (!gyro_.empty() && accel_.size() > 1) {
-    const Value& a = accel_[0];
-    const Value& b = accel_[1];
-    const Value& gyro = gyro_.front();
+  while (!gyro_.values.empty() && accel_.values.size() > 1) {
+    const Value& a = accel_.values[0];
+    const Value& b = accel_.values[1];
+    const Value& gyro = gyro_.values.front();
     if (gyro.stamp >= b.stamp) {
-      accel_.pop_front();
+      accel_.values.pop_front();
       continue;
     }
     const double gap = b.stamp - a.stamp;
@@ -35,7 +35,7 @@ std::vector<ImuSample> ImuMerger::Take() {
       samples.push_back(
           {gyro.stamp, gyro.value, a.value + part * (b.value - a.value)});
     }
-    gyro_.pop_front();
+    gyro_.values.pop_front();
   }
   return samples;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <deque>
+#include <limits>
 #include <vector>
 
 #include "core/inertial/imu_sample.h"
@@ -27,11 +28,15 @@ class ImuMerger {
     double stamp;
     Eigen::Vector3d value;
   };
-  static void Add(std::deque<Value>* stream, double stamp,
-                  const Eigen::Vector3d& value);
+  struct Stream {
+    std::deque<Value> values;  // that are still needed
+    double last_stamp = -std::numeric_limits<double>::infinity();
 
-  std::deque<Value> gyro_;
-  std::deque<Value> accel_;
+    void Add(double stamp, const Eigen::Vector3d& value);
+  };
+
+  Stream gyro_;
+  Stream accel_;
 };
 
 }  // namespace rgbd_pose

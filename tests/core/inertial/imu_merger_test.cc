@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace rgbd_pose {
@@ -57,6 +58,23 @@ TEST(ImuMergerTest, LeavesOutWhatIsNotLater) {
   ASSERT_EQ(samples.size(), 1u);
   EXPECT_EQ(samples[0].gyro, Vector3d::UnitX());
   EXPECT_EQ(samples[0].accel.z(), 9.0);
+  // Also once the one before is taken.
+  merger.AddGyro(0.005, Vector3d::UnitY());
+  merger.AddGyro(0.002, Vector3d::UnitY());
+  EXPECT_TRUE(merger.Take().empty());
+  merger.AddGyro(0.007, Vector3d::UnitZ());
+  EXPECT_EQ(StampsOf(merger.Take()), (std::vector<double>{0.007}));
+}
+
+TEST(ImuMergerTest, AStampThatIsNoNumberHidesNothing) {
+  ImuMerger merger;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  merger.AddGyro(kNone, Vector3d::UnitX());
+  merger.AddAccel(kNone, {0.0, 0.0, 9.0});
+  merger.AddGyro(0.005, Vector3d::UnitX());
+  merger.AddAccel(0.0, {0.0, 0.0, 9.0});
+  merger.AddAccel(0.01, {0.0, 0.0, 9.0});
+  EXPECT_EQ(StampsOf(merger.Take()), (std::vector<double>{0.005}));
 }
 
 }  // namespace
