@@ -115,8 +115,13 @@ std::optional<PreintegratedMotion> CameraImu::Motion(double from,
   Eigen::Matrix<double, 9, 9> turned = Eigen::Matrix<double, 9, 9>::Zero();
   for (int i = 0; i < 9; i += 3) turned.block<3, 3>(i, i) = R;
   motion.by_bias = turned * motion.by_bias;
-  motion.covariance.topLeftCorner<9, 9>() =
-      turned * motion.covariance.topLeftCorner<9, 9>() * turned.transpose();
+  PreintegratedMotion::Covariance& covariance = motion.covariance;
+  covariance.topLeftCorner<9, 9>() =
+      turned * covariance.topLeftCorner<9, 9>() * turned.transpose();
+  covariance.topRightCorner<9, 6>() =
+      (turned * covariance.topRightCorner<9, 6>()).eval();
+  covariance.bottomLeftCorner<6, 9>() =
+      covariance.topRightCorner<9, 6>().transpose();
   return motion;
 }
 

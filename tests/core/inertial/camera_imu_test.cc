@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/util/units.h"
 #include "tests/support/camera_with_imu.h"
@@ -42,6 +43,39 @@ TEST(CameraImuTest, TellsTheTurnsOfTheCamera) {
     ASSERT_TRUE(rate.has_value());
     EXPECT_NEAR((rate->angular * 0.1).norm(),
                 RotationVector(turn->cur_from_prev).norm(), 1e-9);
+  }
+}
+
+// The biases stay in the axes of the sensor.
+TEST(CameraImuTest, TurnsTheWholeCovarianceOfAMotion) {
+  CameraWithImu world;
+  const std::vector<ImuSample> samples = world.Samples(-0.2, 1.0);
+  ImuCalibration calibration = world.truth;
+  CameraImu mounted({calibration, true});
+  calibration.cam_from_imu = Rigid3d();
+  CameraImu aligned({calibration, true});
+  mounted.Add(samples);
+  aligned.Add(samples);
+  const auto in_cam = mounted.Motion(0.1, 0.6),
+             in_imu = aligned.Motion(0.1, 0.6);
+  ASSERT_TRUE(in_cam.has_value() && in_imu.has_value());
+  PreintegratedMotion::Covariance turn;
+  turn.setIdentity();
+  for (int i = 0; i < 9; i += 3) {
+    turn.block<3, 3>(i, i) =
+        world.truth.cam_from_imu->rotation.toRotationMatrix();
+  }
+  const PreintegratedMotion::Covariance expected =
+      turn * in_imu->covariance * turn.transpose();
+  constexpr double kRounding = 1e-12;
+  for (int row = 0; row < 15; ++row) {
+    for (int column = 0; column < 15; ++column) {
+      const double size =
+          std::sqrt(expected(row, row) * expected(column, column));
+      EXPECT_NEAR(in_cam->covariance(row, column), expected(row, column),
+                  kRounding * size)
+          << row << " " << column;
+    }
   }
 }
 
