@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/geometry/rigid3.h"
 #include "core/util/format.h"
@@ -152,8 +153,13 @@ std::string DegreesError(double fastest) {
 
 }  // namespace
 
-ImuFindings ExamineImu(const std::vector<ImuSample>& samples) {
+ImuFindings ExamineImu(const std::vector<ImuSample>& recorded) {
   ImuFindings findings;
+  std::vector<ImuSample> samples;
+  std::copy_if(recorded.begin(), recorded.end(), std::back_inserter(samples),
+               [](const ImuSample& sample) {
+                 return sample.gyro.allFinite() && sample.accel.allFinite();
+               });
   if (samples.empty()) return findings;
   std::vector<double> accel, gyro;
   for (const ImuSample& sample : samples) {

@@ -17,7 +17,7 @@ struct ImuFindings {
 // the size of gravity and by how its direction moves in the axes of a sensor
 // that turns; whether the axes of gyroscope and accelerometer are the same.
 // Says nothing of what the motion does not show. A recording without a
-// gyroscope has zeros for it.
-ImuFindings ExamineImu(const std::vector<ImuSample>& samples);
+// gyroscope has zeros for it. Samples that are not finite do not count.
+ImuFindings ExamineImu(const std::vector<ImuSample>& recorded);
 
 }  // namespace rgbd_pose

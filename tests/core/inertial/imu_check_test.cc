@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "tests/support/imu_path.h"
@@ -70,6 +71,9 @@ TEST(ImuCheckTest, FindsDegrees) {
   for (const ImuSample& s : slow) fastest = std::max(fastest, s.gyro.norm());
   ASSERT_LT(fastest, 40.0);
   EXPECT_THAT(ExamineImu(slow).error, HasSubstr("in degrees per second"));
+  slow[100].gyro.x() = std::nan("");
+  EXPECT_THAT(ExamineImu(slow).error, HasSubstr("in degrees per second"))
+      << "a single sample that is no number hides the mistake";
 }
 
 TEST(ImuCheckTest, SaysWhichAxesFitGravity) {
