@@ -18,7 +18,8 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width) {
   problem_ = std::make_unique<ceres::Problem>(options);
   x_.reserve(graph.poses.size());  // must not move
   int columns = 0;
-  auto* const manifold = new PoseManifold();
+  // Belongs to the problem, but only with a pose.
+  auto* const manifold = graph.poses.empty() ? nullptr : new PoseManifold();
   for (const GraphTerms::Pose& pose : graph.poses) {
     double* const x = x_.emplace_back(PoseVectorOf(pose.world_from_cam)).data();
     AddPose(x, problem_.get(), manifold);

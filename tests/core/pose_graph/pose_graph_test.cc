@@ -53,6 +53,14 @@ TEST(PoseGraphTest, ATreeTellsNothingTwice) {
   EXPECT_EQ(graph.OvercountingFactor(), 2.0);
 }
 
+// Nor does it leak memory, which a sanitizer shows.
+TEST(PoseGraphTest, AGraphWithoutPosesIsSolved) {
+  PoseGraph graph;
+  const GraphSolution solution = graph.Solve();
+  EXPECT_TRUE(solution.ok()) << solution.reason;
+  EXPECT_EQ(solution.final_cost, 0.0);
+}
+
 TEST(PoseGraphTest, RefusesDirectionsThatAreNone) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   const auto reason = [](int a, int b, const CommonDirectionFactor& factor) {
