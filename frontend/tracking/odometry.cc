@@ -60,6 +60,17 @@ void RequireSize(const Frame& frame, const Camera& camera) {
   }
 }
 
+// The pose follows the guess while tracking is lost.
+void RequireFinite(const Rigid3d* guess, const MotionMatrix* covariance) {
+  if (guess == nullptr) return;
+  if (guess->IsFinite() && (covariance == nullptr || covariance->allFinite())) {
+    return;
+  }
+  throw InputError(
+      "odometry: the motion guess or its covariance is not finite; leave it "
+      "out for this frame");
+}
+
 }  // namespace
 
 std::string OdometryOptions::Check() const {
@@ -99,6 +110,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                              const MotionMatrix* guess_covariance) {
   PreparedFrame frame = measured;
   RequireSize(frame, tracker_->images().camera);
+  RequireFinite(cur_from_prev_guess, guess_covariance);
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;

@@ -78,7 +78,7 @@ class Odometry {
   // covariance, as in MotionEstimate, becomes the prior of costs that have one;
   // null: unknown (see OdometryOptions). The images are copied: their memory
   // may be reused for the next frame. Throws InputError, and counts no frame,
-  // if they do not have the camera's size.
+  // if they do not have the camera's size, or if the guess is not finite.
   TrackedFrame Track(const Frame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);

@@ -47,6 +47,23 @@ TEST(OdometryTest, RefusesImagesOfAnotherSize) {
                    {"the size of the camera, 640 x 480"});
 }
 
+// While tracking is lost, the pose follows guesses.
+TEST(OdometryTest, RefusesGuessesThatAreNotFinite) {
+  const SyntheticDataset dataset((SyntheticOptions()));
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  const Frame frame = dataset.Read(0);
+  odometry.Track(frame);
+  Rigid3d guess;
+  MotionMatrix covariance = MotionMatrix::Identity();
+  covariance(2, 3) = std::nan("");
+  ExpectInputError([&] { odometry.Track(frame, &guess, &covariance); },
+                   {"guess or its covariance is not finite"});
+  guess.translation.x() = std::nan("");
+  ExpectInputError([&] { odometry.Track(frame, &guess); },
+                   {"guess or its covariance is not finite"});
+  EXPECT_EQ(odometry.Track(frame).index, 1) << "counted a refused frame";
+}
+
 TEST(OdometryTest, EveryFrameGetsAResultAndBlackOnesAreLost) {
   const SyntheticDataset dataset = Room("still", 1);
   Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
