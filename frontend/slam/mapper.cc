@@ -76,6 +76,8 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
     throw InputError("map: " + difference +
                      "; give the camera that made the map, or make a new one");
   }
+  // If an image is damaged, nothing of the map is loaded.
+  for (const Keyframe& keyframe : map.keyframes) keyframe.Unpacked();
   for (const Keyframe& keyframe : map.keyframes) {
     Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }

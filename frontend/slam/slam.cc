@@ -28,10 +28,12 @@ void Slam::Load(KeyframeMap map, bool is_held) {
   for (RelativePose& edge : map.edges) {
     edge.ref += first_id_;
     edge.cur += first_id_;
-    links_.push_back({edge.ref, edge.cur, false});
   }
   for (MapUp& up : map.ups) up.keyframe += first_id_;
   mapper_.Load(map, is_held);
+  for (const RelativePose& edge : map.edges) {
+    links_.push_back({edge.ref, edge.cur, false});
+  }
   for (const Keyframe& keyframe : map.keyframes) {
     // In the odometry, ids of loaded keyframes stay below -1.
     first_id_ = std::max(first_id_, keyframe.id + 2);

@@ -8,6 +8,7 @@
 #include <future>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -240,6 +241,25 @@ TEST(SlamTest, RefusesAMapOfAnotherCamera) {
                  "320 x 240; give the camera that made the map, or make a new "
                  "one");
   }
+}
+
+// The header of a damaged image may be sound.
+TEST(SlamTest, AMapWithADamagedImageLeavesNothingBehind) {
+  Player first;
+  first.Play(Range(0, kFrames));
+  first.slam.Finish();
+  KeyframeMap map = first.slam.Map();
+  ASSERT_GT(map.keyframes.size(), 1u);
+  ASSERT_FALSE(map.edges.empty());
+  std::shared_ptr<const PngBytes>& image = map.keyframes.back().images.depth;
+  image = std::make_shared<const PngBytes>(image->bytes.substr(0, 60));
+  Player second;
+  EXPECT_THROW(second.slam.Load(map, false), InputError);
+  EXPECT_TRUE(second.slam.links().empty());
+  second.Play(Range(0, kFrames));
+  second.slam.Finish();
+  EXPECT_EQ(second.slam.Map().keyframes.size(),
+            first.slam.Map().keyframes.size());
 }
 
 TEST(SlamTest, RefusesOptionsThatMakeNoSense) {
