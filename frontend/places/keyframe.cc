@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/util/format.h"
+#include "core/util/input_error.h"
 #include "frontend/files/image_file.h"
 #include "frontend/files/png_codec.h"
 #include "frontend/files/png_decoder.h"
@@ -19,6 +20,9 @@ StoredImages::StoredImages(const Frame& frame)
 Frame StoredImages::Restore() const {
   const std::string of =
       " image of the keyframe at " + Format("%.6f", timestamp);
+  if (gray == nullptr || depth == nullptr) {
+    throw InputError("there is no" + of);
+  }
   Frame frame = {0, timestamp, depth_delay};
   frame.depth_scale = depth_scale;
   frame.gray = DecodeGrayImage(gray->bytes, "the grey" + of);

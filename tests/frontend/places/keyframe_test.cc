@@ -71,6 +71,9 @@ TEST(StoredImagesTest, RefusesDamagedImages) {
   images.depth = std::make_shared<PngBytes>(bytes);
   ExpectInputError([&] { images.Restore(); },
                    {"the depth image of the keyframe at 12.300000", "damaged"});
+  images.depth = nullptr;
+  ExpectInputError([&] { images.Restore(); },
+                   {"there is no image of the keyframe at 12.300000"});
 }
 
 }  // namespace
