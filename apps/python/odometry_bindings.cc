@@ -90,7 +90,8 @@ void BindTrackedFrame(py::module_* module) {
   property("is_reference", &TrackedFrame::is_reference,
            "whether it became the reference of later frames");
   property("previous_is_reference", &TrackedFrame::previous_is_reference,
-           "whether the previous frame became the reference for it");
+           "whether the previous frame became a keyframe, mostly its "
+           "reference");
   property("relocalised", &TrackedFrame::relocalised,
            "whether it was relocalised among earlier references");
   property("is_predicted", &TrackedFrame::is_predicted,

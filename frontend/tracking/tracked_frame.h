@@ -57,8 +57,8 @@ struct TrackedFrame {
   bool is_reference = false;   // became the reference of the next frames
   bool relocalised = false;    // found again among earlier references
 
-  // The previous frame has become a reference, and the motion of this frame is
-  // relative to it. For its images see Odometry::FindKeyframe.
+  // The previous frame has become a keyframe, to which the motion of this frame
+  // is mostly relative. For its images see Odometry::FindKeyframe.
   bool previous_is_reference = false;
 
   // The frame is lost, but since the loss the pose follows motion guesses from
