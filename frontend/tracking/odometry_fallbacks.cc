@@ -65,6 +65,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   TrackingGuess guess = GuessOf(place->cur_from_keyframe);
   VelocityPrior velocity = state_.shutter_tracking.velocity().Prior(
       std::nullopt, state_.interval, frame.color_shutter.offset);
+  velocity.reference_covariance = keyframe->velocity_covariance;
   if (inertial_.has_value()) velocity.measured = inertial_->TwistDuring(frame);
   if (state_.has_shutter && state_.interval > 0.0) guess.velocity = &velocity;
   if (!attempts_.Try(frame, *keyframe, guess, result) ||

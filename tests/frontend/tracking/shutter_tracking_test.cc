@@ -330,5 +330,30 @@ TEST(ShutterTrackingTest, ARelocalisationEndsTheWaitForAVelocity) {
   }
 }
 
+// Rows tell the velocity relative to that of the reference only. Nothing is
+// known of that of a first frame: so if the next frame shows another place and
+// the one after it is found again there, both may have it.
+TEST(ShutterTrackingTest, ARelocalisedFrameMayMoveAsItsReferenceDoes) {
+  const ShutterSequence sequence("handheld", RollingShutters(1.0), 3);
+  SyntheticOptions elsewhere = ShutterOptions("handheld", RollingShutters(1.0));
+  elsewhere.scene = "corridor";
+  OdometryOptions options;
+  options.max_flow_px = 1.0;  // every frame is a reference
+  Odometry odometry(
+      options,
+      MakeTracker("hybrid", PartsFor(sequence.dataset.camera().camera)));
+  odometry.Track(sequence.frames[0]);
+  odometry.Track(SyntheticDataset(elsewhere).Read(1));
+  const TrackedFrame back = odometry.Track(sequence.frames[2]);
+  ASSERT_TRUE(back.relocalised) << back.reason;
+  ASSERT_TRUE(back.is_reference) << back.reason;
+  ASSERT_EQ(back.reference, 0);
+  const auto variance = [&](int frame) {
+    return odometry.FindKeyframe(frame)->velocity_covariance.trace();
+  };
+  // The velocity of a hand is limited: this halves it.
+  EXPECT_GT(variance(2), 0.4 * variance(0));
+}
+
 }  // namespace
 }  // namespace rgbd_pose
