@@ -195,6 +195,10 @@ bool ShutterTracking::MoveReference(const Twist& since,
         early_->timing_covariance +
         MotionCovarianceOfAcceleration(frame.Timing(twist), change);
   }
+  // Nothing was known before: a camera that stands still is known to.
+  if (!early_->velocity.has_value() && !frame.twist.has_value()) {
+    reference->velocity_covariance = smoothed.covariance;
+  }
   if (LargestFlow(tracker_->images().camera, frame.Timing(twist),
                   twist - frame.twist.value_or(Twist())) < kSmallFlowPx) {
     return false;

@@ -168,6 +168,14 @@ TEST_F(ShutterReferenceTest, ItsVelocityBecomesMoreCertain) {
   EXPECT_GT(reference_covariance_.diagonal().minCoeff(), 0.0);
 }
 
+// A recording often begins on a tripod or a table.
+TEST_F(ShutterReferenceTest, AStillCameraIsKnownToHaveStoodStill) {
+  Follow(std::nullopt, Twist());
+  EXPECT_TRUE(tracker_.moves.empty());
+  EXPECT_LT(reference_.velocity_covariance.trace(),
+            0.1 * VelocityModel::CovarianceOfUnknown().trace());
+}
+
 TEST_F(ShutterReferenceTest, ASmallChangeMovesNothing) {
   Follow(kHand, 1.01 * kHand);
   EXPECT_TRUE(tracker_.moves.empty());
