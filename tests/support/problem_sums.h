@@ -59,10 +59,11 @@ inline ProblemSums SumsOf(ceres::Problem* problem) {
   return sums;
 }
 
-// The largest difference of two problems' sums, NaN if there is one. It is
-// relative to what the columns of the Jacobian allow: a gradient is a sum that
-// cancels.
-inline double SumsError(const ProblemSums& a, const ProblemSums& b) {
+// The largest difference of the sums of two problems, or of two costs
+// (NormalEquations); NaN if there is one. It is relative to what the columns of
+// the Jacobian allow: a gradient is a sum that cancels.
+template <typename Sums>
+double SumsError(const Sums& a, const Sums& b) {
   double error = 0.0;
   const auto compare = [&error](double x, double y, double unit) {
     const double off = x == y ? 0.0 : std::abs(x - y) / unit;

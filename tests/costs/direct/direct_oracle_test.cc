@@ -10,6 +10,7 @@
 #include "costs/cost_list.h"
 #include "tests/support/both_jacobians.h"
 #include "tests/support/direct_columns.h"
+#include "tests/support/problem_sums.h"
 
 namespace rgbd_pose {
 namespace {
@@ -238,12 +239,7 @@ class DirectOracleTest : public ::testing::Test {
     EXPECT_EQ(cost.matches().size(), expected.rows);
     // Positions within a pixel are floats.
     constexpr double kRounding = 1e-6;
-    const NormalEquations& normal = expected.normal;
-    EXPECT_NEAR(actual.cost, normal.cost, kRounding * normal.cost);
-    EXPECT_LE((actual.gradient - normal.gradient).norm(),
-              kRounding * normal.gradient.norm());
-    EXPECT_LE((actual.hessian - normal.hessian).norm(),
-              kRounding * normal.hessian.norm());
+    EXPECT_LE(SumsError(actual, expected.normal), kRounding);
   }
 
   static constexpr int kMaxPoints = 1000;
