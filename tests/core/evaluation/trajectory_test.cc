@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "frontend/simulation/synthetic_matches.h"
@@ -11,8 +12,12 @@
 namespace rgbd_pose {
 namespace {
 
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
 TEST(TrajectoryTest, FormatsTumText) {
-  const Eigen::Quaterniond half_turn(0.0, 0.0, 1.0, 0.0);
+  const Quaterniond half_turn(0.0, 0.0, 1.0, 0.0);
   EXPECT_EQ(FormatTrajectory({{1305031098.6659, Rigid3d()},
                               {1305031099.0, {half_turn, {1.5, -2, 3e-10}}}}),
             "# timestamp tx ty tz qx qy qz qw\n"
@@ -56,9 +61,8 @@ TEST(TrajectoryTest, ReadsTheColumnsInTheirOrder) {
                    "0.6,1,2,3,0,0,0,-1.009\r\n"));
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[0].timestamp, 0.5);
-  const Eigen::Vector3d in_world =
-      read[0].world_from_cam * Eigen::Vector3d(1, 0, 0);
-  EXPECT_LE((in_world - Eigen::Vector3d(1, 3, 3)).norm(), 1e-15);
+  const Vector3d in_world = read[0].world_from_cam * Vector3d(1, 0, 0);
+  EXPECT_LE((in_world - Vector3d(1, 3, 3)).norm(), 1e-15);
   EXPECT_EQ(read[1].timestamp, 0.6);
   EXPECT_EQ(read[1].world_from_cam.rotation.norm(), 1.0);
 }
@@ -117,6 +121,75 @@ TEST(TrajectoryTest, NamesTheLineThatIsWrong) {
   }
   ExpectInputError([&] { ReadTrajectory(folder / "missing.txt"); },
                    {folder / "missing.txt"});
+}
+
+constexpr double kPathTolerance = 1e-12;  // rounding
+
+Rigid3d TurnedAndMoved(double angle, double distance) {
+  return {Quaterniond(AngleAxisd(angle, Vector3d::UnitY())),
+          Vector3d(distance, 0, 0)};
+}
+
+TEST(InterpolatedPoseTest, GoesAlongLineAndArc) {
+  Rigid3d other_sign = TurnedAndMoved(0.4, 2.0);
+  other_sign.rotation.coeffs() *= -1.0;
+  const Trajectory truth = {{1.00, TurnedAndMoved(0.0, 1.0)},
+                            {1.04, other_sign}};
+  const std::optional<Rigid3d> pose = InterpolatedPose(truth, 1.01);
+  ASSERT_TRUE(pose.has_value());
+  EXPECT_NEAR((pose->Inverse() * TurnedAndMoved(0.1, 1.25)).Angle(), 0.0,
+              kPathTolerance);
+  EXPECT_NEAR(pose->translation.x(), 1.25, kPathTolerance);
+}
+
+TEST(InterpolatedPoseTest, CrossesNoGapsAndDoesNotLeave) {
+  const Trajectory truth = {{0.0, TurnedAndMoved(0.0, 1.0)},
+                            {0.06, TurnedAndMoved(0.0, 2.0)},
+                            {0.08, TurnedAndMoved(0.0, 3.0)}};
+  EXPECT_FALSE(InterpolatedPose(truth, -0.001).has_value());
+  EXPECT_TRUE(InterpolatedPose(truth, 0.0).has_value());
+  EXPECT_FALSE(InterpolatedPose(truth, 0.03).has_value());
+  EXPECT_EQ(InterpolatedPose(truth, 0.06)->translation.x(), 2.0);
+  EXPECT_NEAR(InterpolatedPose(truth, 0.07)->translation.x(), 2.5,
+              kPathTolerance);
+  EXPECT_EQ(InterpolatedPose(truth, 0.08)->translation.x(), 3.0);
+  EXPECT_FALSE(InterpolatedPose(truth, 0.081).has_value());
+}
+
+Rigid3d YawedAt(double yaw, double x) {
+  return Rigid3d(Quaterniond(AngleAxisd(yaw, Vector3d::UnitY())),
+                 {x, 0.0, 0.0});
+}
+
+// A quarter turn in 0.1 s while moving 1 m along x; then a gap.
+const Trajectory kGuess = {{10.0, YawedAt(0.0, 0.0)},
+                           {10.1, YawedAt(M_PI / 2, 1.0)},
+                           {11.0, YawedAt(0.0, 5.0)}};
+
+TEST(TrajectoryMotionTest, IsTheMotionFromPreviousToCurrent) {
+  const auto motion = MotionAlong(kGuess, 10.0, 10.1);
+  ASSERT_TRUE(motion.has_value());
+  // The current camera's z axis is the world's x axis; hence the previous
+  // camera is 1 m behind it.
+  const Rigid3d expected = YawedAt(M_PI / 2, 1.0).Inverse();
+  EXPECT_LE((motion->translation - expected.translation).norm(), 1e-12);
+  EXPECT_NEAR(motion->translation.z(), -1.0, 1e-12);
+  EXPECT_NEAR(motion->Angle(), M_PI / 2, 1e-12);
+}
+
+TEST(TrajectoryMotionTest, InterpolatesBetweenPoses) {
+  const auto motion = MotionAlong(kGuess, 10.0, 10.05);
+  ASSERT_TRUE(motion.has_value());
+  EXPECT_NEAR(motion->Angle(), M_PI / 4, 1e-9);
+  EXPECT_NEAR(motion->Inverse().translation.x(), 0.5, 1e-9);
+}
+
+TEST(TrajectoryMotionTest, KnowsNothingInGapsAndBeyondTheEnds) {
+  EXPECT_FALSE(MotionAlong(kGuess, 10.05, 10.5).has_value());
+  EXPECT_FALSE(MotionAlong(kGuess, 9.9, 10.05).has_value());
+  EXPECT_FALSE(MotionAlong(kGuess, 11.0, 11.1).has_value());
+  EXPECT_TRUE(MotionAlong(kGuess, 9.99, 10.05).has_value());
+  EXPECT_FALSE(MotionAlong(Trajectory(), 0.0, 0.1).has_value());
 }
 
 }  // namespace
