@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "core/util/vector_lanes.h"
 #include "costs/cost_list.h"
 #include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
@@ -98,26 +97,6 @@ TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
     MoveToRow(half, half.MakeLens(), kShutters[0], kTwists[2], point.data(),
               moved_there.data());
     EXPECT_LT((moved - moved_there).norm(), 1e-12);  // rounding
-  }
-}
-
-TEST(MoveToRowTest, LanesAreScalars) {
-  using Two = Lanes<2>::Type;
-  const Camera camera = TestCamera(TestLens::kPlumbBob);
-  const std::vector<Vector3d> points = Points(camera);
-  for (size_t i = 1; i < points.size(); ++i) {
-    Two both[3], moved[3];
-    Vector3d first, second;
-    for (int k = 0; k < 3; ++k) both[k] = Two{points[i - 1][k], points[i][k]};
-    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2], both, moved);
-    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2],
-              points[i - 1].data(), first.data());
-    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2],
-              points[i].data(), second.data());
-    for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(moved[k][0], first[k], 1e-13);  // rounding
-      EXPECT_NEAR(moved[k][1], second[k], 1e-13);
-    }
   }
 }
 
