@@ -70,14 +70,6 @@ TEST_P(DescriptorFrontendTest, CoarserKeypointsAreLessExact) {
   EXPECT_GE(most, 2.0 * least);
 }
 
-TEST_P(DescriptorFrontendTest, TheSameFramesGiveTheSameMatches) {
-  const FeatureMatches once = MatchFrom(prev_, cur_, Rigid3d());
-  // A copy has no precomputed data.
-  Frame copy = cur_;
-  copy.gray = cur_.gray.clone();
-  ExpectSame(once, MatchFrom(prev_, copy, Rigid3d()));
-}
-
 TEST_P(DescriptorFrontendTest, AWrongGuessStillGivesMatches) {
   const Rigid3d turned =
       Moved(0.0, 0.3, 0.0) * Turned(0.5, Eigen::Vector3d::UnitY());

@@ -41,6 +41,14 @@ TEST_P(EveryFrontendTest, FindsFeaturesAgain) {
   ExpectMostlyRight(found, 100, 1.0, 4.0);
 }
 
+// Matches with another frame in between do not matter, nor where images lie.
+TEST_P(EveryFrontendTest, TheSameFramesGiveTheSameMatches) {
+  const auto reference = Detect(prev_);
+  const FeatureMatches once = MatchFrom(*reference, cur_, cur_from_prev_);
+  MatchFrom(*reference, dataset_.Read(45), Rigid3d());
+  ExpectSame(once, MatchFrom(*reference, cur_.Clone(), cur_from_prev_));
+}
+
 TEST_P(EveryFrontendTest, TakesTheNoiseThatItIsGiven) {
   const FeatureMatches stated = MatchFrom(prev_, cur_, cur_from_prev_);
   FrontendOptions options = frontend_->options();

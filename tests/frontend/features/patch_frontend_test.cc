@@ -54,15 +54,7 @@ TEST_F(PatchFrontendTest, ExposureDoesNotMatter) {
   }
 }
 
-// Matches with other frames in between, which share the patches, do not matter.
-TEST_F(PatchFrontendTest, TheSameFramesGiveTheSameMatches) {
-  const std::unique_ptr<FeatureSet> reference = Detect(prev_);
-  const FeatureMatches once = MatchFrom(*reference, cur_, Rigid3d());
-  MatchFrom(*reference, dataset_.Read(45), Rigid3d());
-  ExpectSame(once, MatchFrom(*reference, cur_, Rigid3d()));
-}
-
-// Nor do other references, more than the frontend keeps the patches of.
+// More than the frontend keeps the patches of.
 TEST_F(PatchFrontendTest, OtherReferencesDoNotMatter) {
   std::vector<std::unique_ptr<FeatureSet>> references;
   std::vector<FeatureMatches> once;
