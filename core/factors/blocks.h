@@ -39,7 +39,8 @@ struct PoseOf {
 };
 
 // A pose, world_from_body, as [qx qy qz qw x y z]. A quaternion of any length
-// stands for the rotation of the unit quaternion along it.
+// but 0 stands for the rotation of the unit quaternion along it; 0 is NaN, so
+// that a solver reports a pose that nobody has set.
 struct PoseBlock {
   static constexpr char kName[] = "pose";  // for messages
   static constexpr int kSize = 7;          // numbers in the block
@@ -48,8 +49,9 @@ struct PoseBlock {
   // The pose of the block.
   template <typename T>
   static PoseOf<T> Read(const T* x) {
-    return {Eigen::Quaternion<T>(x[3], x[0], x[1], x[2]).normalized(),
-            {x[4], x[5], x[6]}};
+    Eigen::Quaternion<T> q(x[3], x[0], x[1], x[2]);
+    q.coeffs() /= q.norm();  // normalize() would leave 0 as it is
+    return {q, {x[4], x[5], x[6]}};
   }
 
   // d x / d[omega p] for a quaternion of length 1.

@@ -85,6 +85,19 @@ TEST_F(PoseJacobianTest, IsThatOfTheNormalisedQuaternion) {
   }
 }
 
+// Of a pose that nobody has set, and that the problem holds, Ceres asks for no
+// Jacobian: the residual has to be refused.
+TEST_F(PoseJacobianTest, NoRotationIsNoResidual) {
+  Draw();
+  ref_.head<4>().setZero();
+  const std::unique_ptr<ceres::CostFunction> function(MakeFactor(factor_));
+  const double* x[] = {ref_.data(), cur_.data()};
+  MotionVector r;
+  function->Evaluate(x, r.data(), nullptr);
+  EXPECT_TRUE(r.head<3>().hasNaN());
+  EXPECT_TRUE(PoseBlock::Read(ref_.data()).q.coeffs().hasNaN());
+}
+
 // A problem may hold a pose, of which Ceres then wants no Jacobian.
 TEST_F(PoseJacobianTest, FillsInOnlyWhatIsWanted) {
   Draw();
