@@ -31,9 +31,47 @@ struct Evaluated {
   Eigen::MatrixXd J;
 };
 
+bool HasBlocks(const ceres::CostFunction* function,
+               const std::vector<BlockKind>& kinds) {
+  return function != nullptr &&
+         std::equal(kinds.begin(), kinds.end(),
+                    function->parameter_block_sizes().begin(),
+                    function->parameter_block_sizes().end(),
+                    [](const BlockKind& kind, int32_t size) {
+                      return kind.size == size;
+                    });
+}
+
+// Throws InputError if the parts of a factor do not fit together, where an
+// evaluation would write beyond its memory, or if the options do not fit it.
+void RequireFitting(const CheckableFactor& factor,
+                    const CheckFactorOptions& options) {
+  if (!HasBlocks(factor.by_hand.get(), factor.kinds) ||
+      !HasBlocks(factor.by_autodiff.get(), factor.kinds) ||
+      factor.by_hand->num_residuals() != factor.by_autodiff->num_residuals()) {
+    throw InputError(factor.name +
+                     ": both functions of a CheckableFactor must have the "
+                     "blocks in `kinds` and equally many residuals, as from "
+                     "MakeCheckable");
+  }
+  if (options.samples < 1) {
+    throw InputError("CheckFactorOptions::samples must be at least 1, not " +
+                     std::to_string(options.samples));
+  }
+  const auto& near = options.near.empty() ? factor.near : options.near;
+  if (!near.empty() &&
+      !std::equal(factor.kinds.begin(), factor.kinds.end(), near.begin(),
+                  near.end(), [](const BlockKind& kind, const auto& block) {
+                    return kind.size == static_cast<int>(block.size());
+                  })) {
+    throw InputError("CheckFactorOptions::near must have the " +
+                     std::to_string(factor.kinds.size()) + " blocks of " +
+                     factor.name);
+  }
+}
+
 class Checker {
  public:
-  // Throws InputError if the blocks of options.near are not the factor's.
   Checker(const CheckableFactor& factor, const CheckFactorOptions& options)
       : name_(factor.name),
         kinds_(factor.kinds),
@@ -42,7 +80,6 @@ class Checker {
         near_(options.near.empty() ? factor.near : options.near),
         options_(options),
         random_(options.seed) {
-    RequireFittingBlocks();
     for (size_t i = 0; i < kinds_.size(); ++i) {
       for (int k = 0; k < kinds_[i].tangent; ++k) {
         columns_.push_back({static_cast<int>(i), k});
@@ -103,17 +140,6 @@ class Checker {
     int states = 0;  // with an error above the tolerance
     int jumps = 0;   // states near which the residual is not smooth
   };
-
-  void RequireFittingBlocks() const {
-    bool fits = near_.empty() || near_.size() == kinds_.size();
-    for (size_t i = 0; fits && i < near_.size(); ++i) {
-      fits = static_cast<int>(near_[i].size()) == kinds_[i].size;
-    }
-    if (!fits) {
-      throw InputError("CheckFactorOptions::near must have the " +
-                       std::to_string(kinds_.size()) + " blocks of " + name_);
-    }
-  }
 
   State RandomState() {
     State state;
@@ -297,11 +323,13 @@ class Checker {
 
 std::string CheckFactor(const CheckableFactor& factor,
                         const CheckFactorOptions& options) {
+  RequireFitting(factor, options);
   return Checker(factor, options).Text();
 }
 
 std::vector<FactorErrors> ErrorsOfFactor(const CheckableFactor& factor,
                                          const CheckFactorOptions& options) {
+  RequireFitting(factor, options);
   return Checker(factor, options).Errors();
 }
 

@@ -17,7 +17,7 @@ namespace rgbd_pose {
 
 // How a factor is checked.
 struct CheckFactorOptions {
-  int samples = 100;  // random states
+  int samples = 100;  // random states, at least 1
   unsigned seed = 1;  // of the states
 
   // Largest errors, relative to the largest entry of the row: by hand against
@@ -136,7 +136,8 @@ CheckableFactor MakeCheckable(const Factor& factor) {
 // and with central differences, and Residual with what Jacobian fills in.
 // Empty if they agree at all states. Otherwise a line for each wrong entry says
 // its row, block and direction, and the values where they differ most. Where
-// Jacobian leaves an entry as it is, all of its row and block are NaN.
+// Jacobian leaves an entry as it is, all of its row and block are NaN. Throws
+// InputError for options, or parts of a CheckableFactor, that do not fit.
 std::string CheckFactor(const CheckableFactor& factor,
                         const CheckFactorOptions& options = {});
 template <typename Factor>

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "core/factors/relative_pose.h"
 #include "core/util/input_error.h"
@@ -125,6 +127,43 @@ TEST(CheckFactorTest, AsksForAStateWhereThereIsNone) {
   EXPECT_EQ(CheckFactor(NarrowFactor(), options), "");
   options.near = {{1.0, 2.0}};
   EXPECT_THROW(CheckFactor(NarrowFactor(), options), InputError);
+}
+
+TEST(CheckFactorTest, WithoutStatesNothingIsRight) {
+  CheckFactorOptions options;
+  for (const int samples : {0, -3}) {
+    options.samples = samples;
+    EXPECT_THROW(CheckFactor(PositionFactor<Mistake::kSign>(), options),
+                 InputError);
+    EXPECT_THROW(ErrorsOfFactor(PositionFactor<Mistake::kSign>(), options),
+                 InputError);
+  }
+}
+
+// They would be evaluated beyond the memory of the other function's results.
+TEST(CheckFactorTest, RefusesFunctionsThatDoNotFitTogether) {
+  const auto refused = [](auto spoil) {
+    CheckableFactor factor = MakeCheckable(PositionFactor<Mistake::kNone>());
+    spoil(&factor);
+    EXPECT_THROW(CheckFactor(factor), InputError);
+  };
+  refused([](CheckableFactor* factor) { factor->by_hand.reset(); });
+  refused([](CheckableFactor* factor) { factor->by_autodiff.reset(); });
+  refused([](CheckableFactor* factor) { factor->kinds.pop_back(); });
+  refused([](CheckableFactor* factor) {
+    std::swap(factor->kinds[0], factor->kinds[1]);
+  });
+  refused([](CheckableFactor* factor) {
+    factor->by_hand.reset(MakeFactor(NarrowFactor()));
+  });
+  refused([](CheckableFactor* factor) {
+    struct OneRow : ceres::SizedCostFunction<1, 2, 7> {
+      bool Evaluate(double const* const*, double*, double**) const override {
+        return false;
+      }
+    };
+    factor->by_hand = std::make_unique<OneRow>();
+  });
 }
 
 }  // namespace
