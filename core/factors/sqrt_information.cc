@@ -25,6 +25,7 @@ SmallMatrix SqrtInformation(const SmallMatrix& information) {
 
 SmallMatrix SqrtInformationOfCovariance(const SmallMatrix& covariance) {
   constexpr double kRounding = 1e-9;
+  if (!covariance.allFinite()) throw InputError("a covariance is not finite");
   const SmallMatrix S = SqrtInformation(covariance.inverse());
   if (!covariance.isApprox(covariance.transpose(), kRounding)) {
     throw InputError("a covariance is not symmetric");

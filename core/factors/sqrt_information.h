@@ -10,7 +10,7 @@ namespace rgbd_pose {
 SmallMatrix SqrtInformation(const SmallMatrix& information);
 
 // S with S^T S = covariance^-1. Throws InputError if the covariance is not
-// symmetric and positive definite.
+// finite, symmetric and positive definite.
 SmallMatrix SqrtInformationOfCovariance(const SmallMatrix& covariance);
 
 }  // namespace rgbd_pose

@@ -116,6 +116,10 @@ class Integrator {
 }  // namespace
 
 PreintegratedMotion::Covariance PreintegratedMotion::SqrtInformation() const {
+  if (!covariance.allFinite()) {
+    throw InputError(
+        "an inertial interval is not finite: check its samples and its bias");
+  }
   // Scaled first: positions and biases differ by orders of magnitude.
   const Eigen::Matrix<double, 15, 1> sigma = covariance.diagonal().cwiseSqrt();
   const Covariance scaled = sigma.cwiseInverse().asDiagonal() * covariance *

@@ -38,8 +38,8 @@ struct PreintegratedMotion {
   using Covariance = Eigen::Matrix<double, 15, 15>;
   Covariance covariance = Covariance::Zero();
 
-  // S with S^T S = covariance^-1. Throws InputError if it is not positive
-  // definite.
+  // S with S^T S = covariance^-1. Throws InputError if the covariance is not
+  // finite and positive definite.
   Covariance SqrtInformation() const;
 };
 

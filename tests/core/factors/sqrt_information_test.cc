@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/factors/sampler.h"
 #include "core/geometry/motion.h"
 #include "core/util/input_error.h"
@@ -38,6 +40,13 @@ TEST(SqrtInformationTest, OfACovarianceThatIsPositiveDefinite) {
   Eigen::Matrix3d skewed = Eigen::Matrix3d::Identity();
   skewed(0, 1) = 0.5;
   EXPECT_THROW(SqrtInformationOfCovariance(skewed), InputError);
+  skewed(0, 1) = NAN;
+  try {
+    SqrtInformationOfCovariance(skewed);
+    ADD_FAILURE() << "NaN is taken";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "a covariance is not finite");
+  }
 }
 
 }  // namespace

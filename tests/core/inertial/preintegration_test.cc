@@ -220,7 +220,10 @@ TEST(PreintegrationTest, BadInputIsOneLine) {
   bad = samples;
   bad[3].accel[0] = NAN;
   const auto motion = Preintegrate(bad, ImuBiasVector::Zero(), ImuNoise());
-  ExpectInputError([&] { motion.SqrtInformation(); }, {"positive definite"});
+  ExpectInputError([&] { motion.SqrtInformation(); },
+                   {"not finite", "check its samples"});
+  ExpectInputError([] { PreintegratedMotion().SqrtInformation(); },
+                   {"positive definite"});
 }
 
 }  // namespace
