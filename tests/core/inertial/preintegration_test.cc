@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/factors/rotations.h"
 #include "core/factors/sampler.h"
 #include "core/geometry/rigid3.h"
 #include "tests/support/expect_input_error.h"
@@ -108,6 +109,25 @@ TEST(PreintegrationTest, DerivativesByTheBiasHoldForLargeTurns) {
     samples.push_back({0.05 * k, gyro, random.Vector<3>(10.0)});
   }
   ExpectDerivativesOfTheSum(samples);
+}
+
+// A step at a constant rate, on both sides of where the series for small turns
+// takes over: differences are too coarse to see its last terms.
+TEST(PreintegrationTest, DerivativesByTheBiasHoldForSmallTurns) {
+  constexpr double kSeconds = 0.5;
+  constexpr double kSeries = 1e-12;  // what its first left out term may be
+  FactorSampler random(2);
+  for (const double angle : {0.0, 1e-4, 0.9e-2, 0.999e-2, 1.001e-2, 0.03}) {
+    const Eigen::Vector3d turn = angle * random.Vector<3>(1.0).normalized();
+    const ImuSample from = {0.0, turn / kSeconds, Eigen::Vector3d::Zero()};
+    ImuSample to = from;
+    to.stamp = kSeconds;
+    const Eigen::Matrix3d by_gyro =
+        Preintegrate({from, to}, ImuBiasVector::Zero(), ImuNoise())
+            .by_bias.topLeftCorner<3, 3>();
+    EXPECT_LT((by_gyro + kSeconds * RotationByJacobian(turn)).norm(), kSeries)
+        << angle;
+  }
 }
 
 // A bias that is half as far off leaves a quarter of the error.
