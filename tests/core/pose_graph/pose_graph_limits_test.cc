@@ -1,6 +1,7 @@
 // Limits of a graph, tested with two poses whose solution is known by hand:
 // which poses are determined, and the final widths of losses.
 
+#include <ceres/loss_function.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,6 +124,45 @@ TEST(PoseGraphTest, EdgesDetermineAPoseTogether) {
   }
 }
 
+// Neither of two edges alone determines a pose; both together just do, or just
+// do not, in the direction `weak`. They measure `apart` to either side of where
+// the pose is, under a loss of whose slope there `share` is left.
+void ExpectTheLimitOfTwoEdges(int weak, double apart, double share,
+                              const ceres::LossFunction* loss) {
+  for (const double ratio : {0.97, 1.03}) {
+    PoseGraphOptions options;
+    options.max_standard_deviation = 0.3;
+    PoseGraph graph(options);
+    // Far from the axes of the world.
+    const Rigid3d turned =
+        Rigid3d::FromRotationVector({0.0, 0.0, 2.8}, {1.0, 2.0, 3.0});
+    RelativePose edge;
+    edge.ref = graph.AddPose(turned, /*is_fixed=*/true);
+    edge.cur = graph.AddPose(turned);
+    const double sigma =
+        ratio * options.max_standard_deviation * std::sqrt(2.0 * share);
+    edge.covariance = 1e-4 * MotionMatrix::Identity();
+    edge.covariance(weak, weak) = sigma * sigma;
+    for (const double side : {-apart, apart}) {
+      edge.cur_from_ref.translation.y() = side * sigma;
+      graph.AddEdge(edge, loss);
+    }
+    const GraphSolution solution = graph.Solve();
+    EXPECT_EQ(solution.ok(), ratio < 1.0) << solution.reason;
+  }
+}
+
+TEST(PoseGraphTest, TheLimitOfTwoEdgesIsThatOfOne) {
+  ExpectTheLimitOfTwoEdges(/*weak=*/2, /*apart=*/0.0, 1.0, nullptr);
+}
+
+TEST(PoseGraphTest, TheLimitIsThatUnderTheLossAsItIs) {
+  const ceres::SoftLOneLoss loss(1.0);
+  double rho[3];
+  loss.Evaluate(16.0, rho);
+  ExpectTheLimitOfTwoEdges(/*weak=*/4, /*apart=*/4.0, rho[1], &loss);
+}
+
 // Two edges put a pose at 0 m and one at 10 m, each +- 1 m, under Huber's loss.
 // All of them pull; the far one with the loss's maximum force. Hence the pose
 // is at half the width of the loss.
@@ -144,6 +184,7 @@ TEST(PoseGraphTest, LossesHaveTheirOwnWidthsInTheEnd) {
     graph.AddEdge(edge, huber.get());
     const GraphSolution solution = graph.Solve();
     ASSERT_TRUE(solution.ok()) << solution.reason;
+    EXPECT_NEAR(solution.initial_cost, 0.5 * rho[0], 1e-9);
     const double x = width / 2.0, far = 10.0 - x;
     EXPECT_NEAR(graph.pose(1).translation.x(), x, 1e-4);
     EXPECT_NEAR(solution.final_cost, x * x + width * far - width * width / 2.0,

@@ -48,6 +48,9 @@ TEST(PoseGraphTest, ATreeTellsNothingTwice) {
   PoseGraph alone;
   alone.AddPose(Rigid3d());
   EXPECT_EQ(alone.OvercountingFactor(), 1.0);
+  PoseGraph fixed;
+  fixed.AddPose(Rigid3d(), /*is_fixed=*/true);
+  EXPECT_EQ(fixed.OvercountingFactor(), 1.0);
   PoseGraph graph = circle.Graph();
   for (int i = 0; i < 3; ++i) graph.AddEdge(circle.edges[0]);
   EXPECT_EQ(graph.OvercountingFactor(), 2.0);
