@@ -217,14 +217,15 @@ TEST(BundleAdjustmentTest, KeyframesNeedNotBeConnected) {
   EXPECT_LT((*variances)[kFx], 1e-2 * world.prior[kFx] * world.prior[kFx]);
 }
 
-// Scales are medians of residuals: 0.6 px in u and 0.4 px in v; 0.5 sigma in
-// depth, where the depths of the anchors are the middle ones.
-TEST(BundleAdjustmentTest, MeasuresTheScalesOfResiduals) {
+// Scales are medians of residuals: those of u and v are 0.4 px and 0.6 px, of
+// which the median is the larger one, whichever has it; 0.5 sigma in depth,
+// where the depths of the anchors are the middle ones.
+void ExpectScales(double off_u, double off_v) {
   World world;
   for (size_t i = 0; i < world.views.views.size(); ++i) {
     LandmarkView& view = world.views.views[i];
-    view.u += 0.6;
-    view.v -= 0.4;
+    view.u += off_u;
+    view.v += off_v;
     view.depth.value += (i % 2 == 0 ? 0.1 : 0.9) / kInverseSigmaDepth;
   }
   for (Landmark& landmark : world.views.landmarks) {
@@ -242,6 +243,11 @@ TEST(BundleAdjustmentTest, MeasuresTheScalesOfResiduals) {
   for (Landmark& landmark : world.views.landmarks) landmark.num_views = 0;
   world.Problem().MeasureScales(&state);
   EXPECT_EQ(state.pixel_scale, 1.0);
+}
+
+TEST(BundleAdjustmentTest, MeasuresTheScalesOfResiduals) {
+  ExpectScales(0.6, -0.4);
+  ExpectScales(-0.4, 0.6);
 }
 
 }  // namespace

@@ -265,6 +265,16 @@ TEST(LandmarkCovarianceTest, OneGroupIsNotCorrected) {
   ExpectInverseAndSandwich(Problem(/*anchor=*/1), 1.0);
 }
 
+TEST(CalibrationStateTest, RowsAreSharesOfTheReadout) {
+  const Problem problem;
+  const double height = problem.views.camera.height;
+  const double row = 1.0 / height;
+  EXPECT_NEAR(MotionAt(problem.views, 1, 0.0).row, -0.5, row);
+  EXPECT_NEAR(MotionAt(problem.views, 1, height - 1.0).row, 0.5, row);
+  EXPECT_EQ(MotionAt(problem.views, 1, 0.0).twist.linear,
+            problem.views.twists[1].linear);
+}
+
 // Sigmas are scaled by the scales in the state.
 TEST(CalibrationStateTest, ScalesSigmas) {
   const Problem problem;
