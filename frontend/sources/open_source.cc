@@ -131,6 +131,27 @@ std::string Content(const std::string& folder) {
   return Join(some) + (count > kMaxNames ? ", ..." : "");
 }
 
+// The first recording in the folders of a folder, by name, down to some levels:
+// archives often have a folder around it. Nothing if there is none.
+std::optional<std::string> FindBelow(SourceOptions options, int levels) {
+  if (levels == 0) return std::nullopt;
+  std::set<std::string> folders;
+  std::error_code error;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(options.path, error)) {
+    if (entry.is_directory(error)) folders.insert(entry.path().string());
+  }
+  for (const std::string& folder : folders) {
+    options.path = folder;
+    for (const SourceType& type : Types()) {
+      if (type.recognises(options)) return folder + ", which is " + type.what;
+    }
+    const auto below = FindBelow(options, levels - 1);
+    if (below.has_value()) return below;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string SourceOptions::Check() const {
@@ -197,8 +218,14 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
         options.path +
         ": is not a supported recording; supported recordings: " + known);
   }
-  throw InputError(options.path + ": is not a supported recording: contains " +
-                   Content(options.path) + "; supported recordings: " + known +
+  const std::string problem = options.path +
+                              ": is not a supported recording: contains " +
+                              Content(options.path);
+  constexpr int kLevels = 2;
+  if (const auto below = FindBelow(options, kLevels)) {
+    throw InputError(problem + "; give " + *below);
+  }
+  throw InputError(problem + "; supported recordings: " + known +
                    " (give bags of different recordings one at a time)");
 }
 

@@ -46,6 +46,17 @@ TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
                    {options_.path, "no such file or folder"});
 }
 
+TEST_F(OpenSourceTest, NamesARecordingInAFolderOfTheFolder) {
+  std::filesystem::create_directories(folder_ / "archive/empty");
+  std::filesystem::create_directories(folder_ / "archive/dataset");
+  std::filesystem::create_directory_symlink(folder_.path(),
+                                            folder_ / "archive/dataset/desk");
+  options_.path = folder_ / "archive";
+  ExpectInputError([&] { OpenSource("auto", options_); },
+                   {"contains dataset/, empty/; give " + options_.path +
+                    "/dataset/desk, which is TUM RGB-D"});
+}
+
 TEST_F(OpenSourceTest, RefusesOptionsOfOtherKindsOfRecordings) {
   options_.topics = {"/color", "/depth"};
   ExpectInputError([&] { OpenSource("auto", options_); },
