@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "core/util/format.h"
@@ -17,9 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number in the place of * in a name; nothing if it differs elsewhere.
-std::optional<int> NumberIn(const std::string& name,
+// The number in the place of * in a name; nothing if it differs elsewhere. Old
+// cameras and file systems write names in capitals.
+std::optional<int> NumberIn(const std::string& file,
                             const std::string& pattern) {
+  const std::string name = cv::toLowerCase(file);
   const size_t star = pattern.find('*');
   const size_t end = name.size() - (pattern.size() - star - 1);
   if (name.size() < pattern.size() ||
@@ -87,6 +90,11 @@ class NumberedDataset final : public Dataset {
                              "are assumed",
                              kNumberedRate));
     }
+    if (is_preset_) {
+      lines.push_back(folder_.path.string() +
+                      ": has no calibration; that of the preset " +
+                      layout_.preset + " is taken");
+    }
     std::vector<std::string> colors;
     for (const auto& frame : folder_.frames) colors.push_back(frame.color_path);
     const std::string masks = MaskRemark(colors);
@@ -136,12 +144,16 @@ class NumberedDataset final : public Dataset {
     return times;
   }
 
-  CameraSetup ChooseSetup(const SourceOptions& options) const {
+  CameraSetup ChooseSetup(const SourceOptions& options) {
+    const std::optional<RgbdCamera> preset = CameraPreset(layout_.preset);
     std::optional<CameraSetup> own;
-    if (!options.camera.has_value()) own = NumberedCamera(layout_, folder_);
+    if (!options.camera.has_value()) {
+      own = NumberedCamera(layout_, folder_);
+      is_preset_ = !own.has_value() && preset.has_value();
+      if (is_preset_) own = CameraSetup(*preset);
+    }
     CameraSetup setup = ChooseCamera(options, own);
     if (!setup.depth_scale) setup.depth_scale = layout_.depth_scale;
-    const std::optional<RgbdCamera> preset = CameraPreset(layout_.preset);
     if (preset.has_value() && !setup.color_shutter.is_known) {
       setup.color_shutter = preset->color_shutter;
       setup.depth_shutter = preset->depth_shutter;
@@ -153,6 +165,7 @@ class NumberedDataset final : public Dataset {
   NumberedFolder folder_;
   bool has_times_ = false;     // else 30 frames per second are assumed
   std::vector<double> times_;  // of the frames, s
+  bool is_preset_ = false;     // the camera is that of the layout
   FrameAssembly assembly_;
 };
 

@@ -10,6 +10,7 @@
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 #include "frontend/files/yaml_section.h"
+#include "frontend/sources/sensor_info.h"
 
 namespace rgbd_pose {
 namespace {
@@ -25,10 +26,11 @@ fs::path FirstOf(const fs::path& folder,
   return {};
 }
 
-// intrinsic.json, or the file name of Open3D's recorder.
+// intrinsic.json, or the file name of Open3D's recorder or of its samples.
 std::optional<CameraSetup> Open3dCamera(const NumberedFolder& folder) {
-  const fs::path path =
-      FirstOf(folder.path, {"intrinsic.json", "camera_intrinsic.json"});
+  const fs::path path = FirstOf(
+      folder.path,
+      {"intrinsic.json", "camera_intrinsic.json", "camera_primesense.json"});
   if (path.empty()) return std::nullopt;
   return ReadCameraFile(path.string());
 }
@@ -144,6 +146,8 @@ NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
     const std::string path =
         (folder.path / Format(name, frame.number)).string();
     if (!PathExists(path)) continue;
+    // Infinite or NaN as Windows writes it, where # begins no comment.
+    if (ReadTextFile(path).find("1.#") != std::string::npos) continue;
     std::vector<double> matrix;
     for (const TextLine& line : ReadTextTable(path)) {
       AddNumbers(line, path, &matrix);
@@ -154,6 +158,10 @@ NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
     AddPose(matrix, frame.number, path, 1, &poses);
   }
   return poses;
+}
+
+NumberedPoses ReadFramePoses(const NumberedFolder& folder) {
+  return ReadPoseFiles(folder, "frame-%06d.pose.txt");
 }
 
 // The number of the image that the i-th of `count` poses belongs to: the i-th
@@ -199,15 +207,23 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
   static const std::vector<NumberedLayout> layouts = {
       {"7scenes",
        "7-Scenes (frame-000000.color.png, .depth.png, .pose.txt)",
-       {"frame-*.color.png", "frame-*.color.jpg"},
+       {"frame-*.color.png"},
        {"frame-*.depth.png"},
        1000.0,
-       [](const NumberedFolder& folder) {
-         return ReadPoseFiles(folder, "frame-%06d.pose.txt");
-       },
+       ReadFramePoses,
        nullptr,
        "",
        "7scenes"},
+      {"bundlefusion",
+       "BundleFusion, 12-Scenes, 3RScan (frame-000000.color.jpg, .depth.png or "
+       ".depth.pgm, .pose.txt, info.txt)",
+       {"frame-*.color.jpg"},
+       {"frame-*.depth.png", "frame-*.depth.pgm"},
+       1000.0,
+       ReadFramePoses,
+       [](const NumberedFolder& folder) {
+         return ReadSensorInfo(folder.path);
+       }},
       {"scannet",
        "ScanNet as exported (color/0.jpg, depth/0.png, pose/0.txt, intrinsic/)",
        {"color/*.jpg", "color/*.png"},
@@ -228,6 +244,15 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
          return ReadPoseTable(folder, "traj.txt", 0, 1);
        },
        ReplicaCamera},
+      {"semantic_nerf",
+       "Replica as Semantic-NeRF and vMAP ship it (rgb/rgb_0.png, "
+       "depth/depth_0.png, traj_w_c.txt)",
+       {"rgb/rgb_*.png"},
+       {"depth/depth_*.png"},
+       1000.0,
+       [](const NumberedFolder& folder) {
+         return ReadPoseTable(folder, "traj_w_c.txt", 0, 1);
+       }},
       {"frame_pairs",
        "images beside each other (frame_00000_rgb.png, frame_00000_depth.png)",
        {"frame_*_rgb.png", "frame_*_rgb.jpg", "frame_*_color.png",
@@ -258,16 +283,13 @@ std::optional<CameraSetup> NumberedCamera(const NumberedLayout& layout,
     std::optional<CameraSetup> own = layout.camera(folder);
     if (own.has_value()) return own;
   }
+  // 3DMatch has one for all recordings of a scene, above them.
   const fs::path text =
-      FirstOf(folder.path, {"camera-intrinsics.txt", "camera_intrinsics.txt",
-                            "intrinsics.txt", "intrinsic.txt"});
-  if (!text.empty()) {
-    return CameraSetup(
-        ReadIntrinsicText(text, folder.frames.front().color_path));
-  }
-  const std::optional<RgbdCamera> preset = CameraPreset(layout.preset);
-  if (!preset.has_value()) return std::nullopt;
-  return CameraSetup(*preset);
+      FirstOf(folder.path,
+              {"camera-intrinsics.txt", "camera_intrinsics.txt",
+               "intrinsics.txt", "intrinsic.txt", "../camera-intrinsics.txt"});
+  if (text.empty()) return std::nullopt;
+  return CameraSetup(ReadIntrinsicText(text, folder.frames.front().color_path));
 }
 
 std::vector<double> NumberedTimes(const NumberedFolder& folder) {

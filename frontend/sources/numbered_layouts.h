@@ -57,9 +57,9 @@ struct NumberedLayout {
 // Frames per second where a folder has no times.
 constexpr double kNumberedRate = 30.0;
 
-// The camera of a folder: as its layout stores it; a camera matrix in
-// intrinsics.txt, camera-intrinsics.txt or another usual name, row by row; or
-// the preset of its layout. Nothing if there is none.
+// The camera that a folder states: as its layout stores it, or a camera matrix
+// in intrinsics.txt, camera-intrinsics.txt or another usual name, row by row.
+// Nothing if there is none.
 std::optional<CameraSetup> NumberedCamera(const NumberedLayout& layout,
                                           const NumberedFolder& folder);
 

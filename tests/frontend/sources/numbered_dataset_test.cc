@@ -107,6 +107,62 @@ TEST_F(NumberedDatasetTest, ReadsSevenScenes) {
   ExpectPoses(*ExpectRead("7scenes", WithCamera(), 1000.0));
 }
 
+// Identity extrinsics, and the intrinsics of SmallCamera().
+std::string SensorInfo(const std::string& extrinsics) {
+  const std::string matrix =
+      "Intrinsic = 30 0 15.5 0 0 30 11.5 0 0 0 1 0 0 0 0 1 \n";
+  return "m_sensorName = StructureSensor\n"
+         "m_colorWidth = 32\nm_colorHeight = 24\n"
+         "m_depthWidth = 32\nm_depthHeight = 24\nm_depthShift = 2000\n"
+         "m_calibrationColor" +
+         matrix + "m_calibrationDepth" + matrix +
+         "m_calibrationDepthExtrinsic = " + extrinsics;
+}
+
+TEST_F(NumberedDatasetTest, ReadsBundleFusion) {
+  for (int k = 0; k < kFrames; ++k) {
+    const std::string stem = "data/frame-" + Padded(k);
+    Write(stem + ".color.jpg", ColorImage(k));
+    Write(stem + ".depth.png", DepthImage(k));
+    WriteText(stem + ".pose.txt", PoseText(k, "\n"));
+  }
+  SourceOptions options = Options();
+  options.path = folder_ / "data";
+  ExpectInputError([&] { OpenSource("auto", options); },
+                   {"contains no camera calibration"});
+  const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 \n";
+  WriteText("info.txt", SensorInfo(identity));  // where 12-Scenes has it
+  auto source = ExpectRead("bundlefusion", options, 2000.0);
+  EXPECT_EQ(source->camera().camera.fx, 30.0);
+  EXPECT_EQ(source->camera().camera.cy, 11.5);
+  EXPECT_EQ(source->camera().color_shutter.readout, 0.0) << "no Kinect";
+  ExpectPoses(*source);
+
+  // Lost, as Windows writes it.
+  WriteText("data/frame-000002.pose.txt", "-1.#INF -1.#INF -1.#INF -1.#INF\n");
+  ExpectPoses(*OpenSource("auto", options), 2);
+
+  const auto expect_bad_info = [&](const std::string& text,
+                                   const std::string& problem) {
+    WriteText("data/_info.txt", text);
+    ExpectInputError([&] { OpenSource("auto", options); },
+                     {"data/_info.txt", problem});
+  };
+  expect_bad_info("made by hand\n", "has no m_calibrationColorIntrinsic");
+  expect_bad_info("m_calibrationColorIntrinsic = 1\n", ":1: ");
+  expect_bad_info(SensorInfo("1 0 0 0.1 0 1 0 0 0 0 1 0 0 0 0 1\n"),
+                  "m_calibrationDepthExtrinsic must be the identity");
+}
+
+TEST_F(NumberedDatasetTest, ReadsDepthAs3RScanHasIt) {
+  Write("frame-000000.color.jpg", ColorImage(0));
+  std::string pgm = "P5\n32 24\n65535\n";  // with the high byte first
+  for (int i = 0; i < kWidth * kHeight; ++i) pgm += "\x03\xE8";  // 1000
+  WriteText("frame-000000.depth.pgm", pgm);
+  const Frame frame = OpenSource("bundlefusion", WithCamera())->Next()->read();
+  EXPECT_EQ(frame.depth.at<uint16_t>(5, 5), 1000);
+}
+
 TEST_F(NumberedDatasetTest, ReadsScanNet) {
   for (int k = 0; k < kFrames; ++k) {
     const std::string number = std::to_string(k);
@@ -185,6 +241,29 @@ TEST_F(NumberedDatasetTest, ReadsReplica) {
   ExpectPose(truth[0].world_from_cam, kFrames - 1);
 }
 
+TEST_F(NumberedDatasetTest, ReadsSemanticNerf) {
+  std::string poses;
+  for (int k = 0; k < kFrames; ++k) {
+    Write("rgb/rgb_" + std::to_string(k) + ".png", ColorImage(k));
+    Write("depth/depth_" + std::to_string(k) + ".png", DepthImage(k));
+    poses += PoseText(k, " ") + "\n";
+  }
+  WriteText("traj_w_c.txt", poses);
+  ExpectPoses(*ExpectRead("semantic_nerf", WithCamera(), 1000.0));
+}
+
+TEST_F(NumberedDatasetTest, ReadsNamesInCapitals) {
+  for (int k = 0; k < kFrames; ++k) {
+    Write("color/" + Padded(k) + ".jpg", ColorImage(k));
+    Write("depth/" + Padded(k) + ".png", DepthImage(k));
+    fs::rename(folder_ / ("color/" + Padded(k) + ".jpg"),
+               folder_ / ("color/" + Padded(k) + ".JPG"));
+    fs::rename(folder_ / ("depth/" + Padded(k) + ".png"),
+               folder_ / ("depth/" + Padded(k) + ".PNG"));
+  }
+  ExpectRead("open3d", WithCamera(), 1000.0);
+}
+
 TEST_F(NumberedDatasetTest, ReadsOpen3d) {
   std::string poses;
   for (int k = 0; k < kFrames; ++k) {
@@ -203,6 +282,10 @@ TEST_F(NumberedDatasetTest, ReadsOpen3d) {
   // The file name used by Open3D's recorder.
   std::filesystem::rename(Options().path + "/intrinsic.json",
                           Options().path + "/camera_intrinsic.json");
+  EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fy, 31.0);
+  // That of its samples.
+  std::filesystem::rename(Options().path + "/camera_intrinsic.json",
+                          Options().path + "/camera_primesense.json");
   EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fy, 31.0);
   // Files that contain no valid camera.
   for (const auto& [wrong, problem] :
@@ -273,7 +356,29 @@ TEST_F(NumberedDatasetTest, KnowsTheShutterOfSevenScenes) {
   SourceOptions options = WithCamera();
   options.camera->color_shutter.is_known = true;  // none, as its file says
   EXPECT_EQ(OpenSource("auto", options)->camera().color_shutter.readout, 0.0);
-  EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fx, 585.0);
+}
+
+// Their camera is used with a remark, unless the recording has one.
+TEST_F(NumberedDatasetTest, SaysThatItTakesTheCameraOfSevenScenes) {
+  WriteSevenScenes();
+  fs::create_directory(folder_ / "seq-01");
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(folder_.path())) {
+    if (!entry.is_regular_file()) continue;
+    fs::rename(entry.path(),
+               folder_ / ("seq-01/" + entry.path().filename().string()));
+  }
+  SourceOptions options = Options();
+  options.path = folder_ / "seq-01";
+  const auto source = OpenSource("auto", options);
+  EXPECT_EQ(source->camera().camera.fx, 585.0);
+  EXPECT_NE(source->remarks().back().find("that of the preset 7scenes"),
+            std::string::npos);
+  // As 3DMatch has it for all recordings of a scene.
+  WriteText("camera-intrinsics.txt", kMatrix);
+  const auto own = OpenSource("auto", options);
+  EXPECT_EQ(own->camera().camera.fx, 30.0);
+  EXPECT_EQ(own->remarks().size(), 1u) << "only the times";
 }
 
 TEST_F(NumberedDatasetTest, LeavesOutWhatHasNoPartner) {
