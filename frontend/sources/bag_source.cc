@@ -90,6 +90,12 @@ class BagSource final : public FrameSource {
                       depth_.frame + "', that of colour '" + color_.frame +
                       "'");
     }
+    if (unstamped_ > 0) {
+      lines.push_back(bag_->path() +
+                      Format(": %d images have no time stamp in their headers: "
+                             "the times of recording are used",
+                             unstamped_));
+    }
     if (!damaged_transform_.empty()) lines.push_back(damaged_transform_);
     AddImuRemarks(&lines);
     if (pairing_.same_stamp() > 0) {
@@ -214,8 +220,9 @@ class BagSource final : public FrameSource {
       return;
     }
     const RosHeader header = ReadImageOf(*bag_, message).header;
-    // Without a stamp in the header, the time of recording is used.
-    const double stamp = header.stamp > 0.0 ? header.stamp : message.received;
+    const bool has_stamp = header.stamp > 0.0;
+    if (!has_stamp) ++unstamped_;
+    const double stamp = has_stamp ? header.stamp : message.received;
     Stream& stream = is_color ? color_ : depth_;
     if (stream.images++ == 0) {
       stream.first = stamp;
@@ -271,6 +278,7 @@ class BagSource final : public FrameSource {
   double received_ = 0.0;  // the recorder's time of the last message, s
   Stream color_;
   Stream depth_;
+  int unstamped_ = 0;  // images whose time is that of recording
   int num_frames_ = 0;
   // The error of the last damaged message that is no image.
   std::string damaged_transform_;

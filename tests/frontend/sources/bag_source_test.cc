@@ -28,6 +28,22 @@ TEST_F(Ros1BagTest, RefusesWhatIsFarOutOfOrder) {
   ExpectRefused({"a.bag: ", kColor, "out of order", "header stamps"});
 }
 
+TEST_F(Ros1BagTest, SaysThatItTakesTheTimesOfRecording) {
+  Begin();
+  for (int k = 0; k < 2; ++k) {
+    Write(kColor, StampOf(k), MakeImage(ColorImage(k), "bgr8", 0.0));
+    Write(kDepth, StampOf(k), MakeImage(DepthImage(k), "16UC1", 0.0));
+  }
+  const auto source = Source();
+  EXPECT_NEAR(source->Next()->timestamp, StampOf(0), 1e-6);
+  while (source->Next().has_value()) {
+  }
+  EXPECT_NE(source->remarks().back().find(
+                "4 images have no time stamp in their headers: the times of "
+                "recording are used"),
+            std::string::npos);
+}
+
 TEST_F(Ros1BagTest, LeavesOutImagesWithoutPairs) {
   Begin();
   for (int k = 0; k < kFrames; ++k) {
