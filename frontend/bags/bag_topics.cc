@@ -75,6 +75,8 @@ Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   if (may_be_depth && Contains(name, "depth")) use = RosImageUse::kDepth;
   if (use == RosImageUse::kColor) {
     fitness.color = 40 + if_raw;
+  } else if (use == RosImageUse::kRawColor) {
+    fitness.color = 30 + if_raw;
   } else if (use == RosImageUse::kGray) {
     const bool is_infrared = Contains(name, "infra") || Contains(name, "/ir");
     fitness.color = (is_infrared ? 10 : 20) + if_raw;

@@ -32,6 +32,23 @@ constexpr Encoding kEncodings[] = {
     {"bgra8", RosImageUse::kColor, CV_8UC4, cv::COLOR_BGRA2GRAY,
      cv::COLOR_BGRA2BGR},
     {"8UC3", RosImageUse::kColor, CV_8UC3, cv::COLOR_BGR2GRAY, -1},
+    {"yuv422", RosImageUse::kRawColor, CV_8UC2, cv::COLOR_YUV2GRAY_UYVY,
+     cv::COLOR_YUV2BGR_UYVY},
+    {"uyvy", RosImageUse::kRawColor, CV_8UC2, cv::COLOR_YUV2GRAY_UYVY,
+     cv::COLOR_YUV2BGR_UYVY},
+    {"yuv422_yuy2", RosImageUse::kRawColor, CV_8UC2, cv::COLOR_YUV2GRAY_YUY2,
+     cv::COLOR_YUV2BGR_YUY2},
+    {"yuyv", RosImageUse::kRawColor, CV_8UC2, cv::COLOR_YUV2GRAY_YUY2,
+     cv::COLOR_YUV2BGR_YUY2},
+    // OpenCV names a pattern by the second and third pixel of the second row.
+    {"bayer_rggb8", RosImageUse::kRawColor, CV_8UC1, cv::COLOR_BayerBG2GRAY,
+     cv::COLOR_BayerBG2BGR},
+    {"bayer_bggr8", RosImageUse::kRawColor, CV_8UC1, cv::COLOR_BayerRG2GRAY,
+     cv::COLOR_BayerRG2BGR},
+    {"bayer_gbrg8", RosImageUse::kRawColor, CV_8UC1, cv::COLOR_BayerGR2GRAY,
+     cv::COLOR_BayerGR2BGR},
+    {"bayer_grbg8", RosImageUse::kRawColor, CV_8UC1, cv::COLOR_BayerGB2GRAY,
+     cv::COLOR_BayerGB2BGR},
     {"mono8", RosImageUse::kGray, CV_8UC1, -1, cv::COLOR_GRAY2BGR},
     {"8UC1", RosImageUse::kGray, CV_8UC1, -1, cv::COLOR_GRAY2BGR},
     {"16UC1", RosImageUse::kDepth, CV_16UC1, -1, -1},
@@ -70,6 +87,11 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
     throw InputError(name + ": is too large to be an image");
   }
   if (image.height == 0) throw InputError(name + ": is empty");
+  if (encoding.type == CV_8UC2 && image.width % 2 != 0) {
+    throw InputError(name + Format(": is %u pixels wide, but %s has pairs of "
+                                   "pixels",
+                                   image.width, encoding.name));
+  }
   const auto width = static_cast<int>(image.width);
   const auto height = static_cast<int>(image.height);
   if (CV_ELEM_SIZE1(encoding.type) == 1) {  // callers only read the pixels

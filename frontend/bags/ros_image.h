@@ -11,6 +11,7 @@ namespace rgbd_pose {
 // What a ROS image holds, by its encoding or, if it is compressed, its format.
 enum class RosImageUse {
   kColor,
+  kRawColor,  // as a sensor or a webcam sends it: a pattern, or YUV
   kGray,
   kDepth,        // 16-bit integers
   kMetricDepth,  // floating-point values, metres

@@ -130,9 +130,10 @@ TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
 
   Open();
   Write(kColor, kStart,
-        MakeImage(cv::Mat(kHeight, kWidth, CV_8UC1), "bayer_rggb8", kStart));
+        MakeImage(cv::Mat(kHeight, kWidth, CV_16UC1), "bayer_rggb16", kStart));
   WriteDepth(0);
-  ExpectRefused({"has no readable colour images", "image_color 'bayer_rggb8'"});
+  ExpectRefused(
+      {"has no readable colour images", "image_color 'bayer_rggb16'"});
 
   Open();
   WriteFrames(1);

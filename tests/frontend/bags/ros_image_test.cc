@@ -35,6 +35,64 @@ TEST_F(Ros1BagTest, ReadsColours) {
   }
 }
 
+// One colour, as the pixels of a pattern show it.
+TEST_F(Ros1BagTest, ReadsPatternsOfColourFilters) {
+  const cv::Vec3b bgr = {10, 120, 230};
+  for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
+    cv::Mat image(kHeight, kWidth, CV_8UC1);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const char filter = pattern[2 * (y % 2) + x % 2];
+        image.at<uint8_t>(y, x) = bgr[filter == 'b'   ? 0
+                                      : filter == 'g' ? 1
+                                                      : 2];
+      }
+    }
+    Begin();
+    Write(kColor, kStart, MakeImage(image, "bayer_" + pattern + "8", kStart));
+    WriteDepth(0);
+    SourceOptions options = Options();
+    options.keep_color = true;
+    const Frame frame = OpenSource("rosbag", options)->Next()->read();
+    EXPECT_EQ(frame.color.at<cv::Vec3b>(3, 4), bgr) << pattern;
+    EXPECT_NEAR(frame.gray.at<uint8_t>(3, 4), 140, 1) << pattern;
+  }
+}
+
+TEST_F(Ros1BagTest, ReadsPairsOfPixelsWithOneChroma) {
+  const cv::Vec4b uyvy = {90, 81, 240, 145};  // pure red, then brighter
+  const cv::Vec4b yuyv = {81, 90, 145, 240};
+  for (const auto& [encoding, pair] : {std::pair("yuv422", uyvy),
+                                       {"uyvy", uyvy},
+                                       {"yuv422_yuy2", yuyv},
+                                       {"yuyv", yuyv}}) {
+    cv::Mat image(kHeight, kWidth / 2, CV_8UC4, cv::Scalar(pair));
+    Begin();
+    Write(kColor, kStart, MakeImage(image.reshape(2), encoding, kStart));
+    WriteDepth(0);
+    SourceOptions options = Options();
+    options.keep_color = true;
+    const Frame frame = OpenSource("rosbag", options)->Next()->read();
+    const auto red = frame.color.at<cv::Vec3b>(3, 4);
+    EXPECT_LT(red[0], 3) << encoding;
+    EXPECT_LT(red[1], 3) << encoding;
+    EXPECT_GT(red[2], 250) << encoding;
+    EXPECT_EQ(frame.gray.at<uint8_t>(3, 4), 81) << encoding;
+    EXPECT_EQ(frame.gray.at<uint8_t>(3, 5), 145) << encoding;
+  }
+}
+
+// Drivers publish what their sensor sends beside the colours made of it.
+TEST_F(Ros1BagTest, PrefersColoursToAPattern) {
+  Begin();
+  Write("/camera/rgb/image_bayer", kStart,
+        MakeImage(cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(77)),
+                  "bayer_grbg8", kStart));
+  WriteColor(0);
+  WriteDepth(0);
+  EXPECT_NE(Source()->Next()->read().gray.at<uint8_t>(5, 5), 77);
+}
+
 TEST_F(Ros1BagTest, ReadsBigEndianDepth) {
   Begin();
   WriteColor(0);
@@ -126,13 +184,19 @@ TEST_F(Ros1BagTest, ReadsCompressedImages) {
 TEST_F(Ros1BagTest, RefusesWrongImages) {
   Begin();
   Write(kColor, kStart,
-        MakeImage(cv::Mat(kHeight, kWidth, CV_8UC2), "yuv422", kStart));
+        MakeImage(cv::Mat(kHeight, kWidth, CV_16UC1), "bayer_rggb16", kStart));
   WriteDepth(0);
   ExpectRefused({"has no readable colour images"});
   SourceOptions options = Options();
   options.topics = {kColor, kDepth};
   ExpectInputError([&] { OpenSource("auto", options)->Next()->read(); },
-                   {"encoding 'yuv422'", "rgb8", kColor});
+                   {"encoding 'bayer_rggb16'", "rgb8", kColor});
+
+  Begin();
+  Write(kColor, kStart,
+        MakeImage(cv::Mat(kHeight, kWidth - 1, CV_8UC2), "yuv422", kStart));
+  WriteDepth(0);
+  ExpectRefused({kColor, "31 pixels wide, but yuv422 has pairs"});
 
   Begin();
   WriteColor(0);
