@@ -87,12 +87,13 @@ Frame FrameAssembly::Make(Frame frame, const Named& gray, const cv::Mat& color,
 }
 
 Frame FrameAssembly::Read(Frame frame, const std::string& color_path,
-                          const std::string& depth_path) const {
+                          const std::string& depth_path,
+                          const DepthReader& read_depth) const {
   cv::Mat color;
   const cv::Mat gray =
       ReadGrayImageFile(color_path, keep_color_ ? &color : nullptr);
   Frame made = Make(std::move(frame), {gray, color_path}, color,
-                    {ReadDepthImageFile(depth_path), depth_path});
+                    {read_depth(depth_path), depth_path});
   const std::string mask_path = MaskPath(color_path);
   if (mask_path.empty()) return made;
   const Named mask = {ReadGrayImageFile(mask_path, nullptr), mask_path};

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <string>
 
 #include "core/geometry/camera.h"
 #include "frontend/files/camera_file.h"
+#include "frontend/files/image_file.h"
 #include "frontend/frame/depth_registration.h"
 #include "frontend/frame/frame.h"
 
@@ -43,10 +45,14 @@ class FrameAssembly {
   // Whether images are turned upside down, see CameraSetup.
   bool is_upside_down() const { return is_upside_down_; }
 
+  // Reads a file of depth, CV_16UC1.
+  using DepthReader = std::function<cv::Mat(const std::string& path)>;
+
   // The same from two files, and the mask of the colour image if there is one
   // (docs/sources.md): where it is 0, the frame has no depth.
   Frame Read(Frame frame, const std::string& color_path,
-             const std::string& depth_path) const;
+             const std::string& depth_path,
+             const DepthReader& read_depth = ReadDepthImageFile) const;
 
  private:
   cv::Mat Upright(const cv::Mat& image) const;

@@ -8,8 +8,8 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/files/image_file.h"
 #include "frontend/files/yaml_section.h"
+#include "frontend/sources/camera_matrix.h"
 #include "frontend/sources/sensor_info.h"
 
 namespace rgbd_pose {
@@ -51,25 +51,6 @@ std::optional<CameraSetup> ReplicaCamera(const NumberedFolder& folder) {
   return std::nullopt;
 }
 
-// Reads a 4 x 4 camera matrix; takes the image size from an image.
-Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
-  const std::string path = file.string();
-  const std::vector<TextLine> lines = ReadTextTable(path);
-  if (lines.size() < 3 || lines[0].words.size() < 3 ||
-      lines[1].words.size() < 3) {
-    throw InputError(path + ": needs a camera matrix, row by row");
-  }
-  const auto number = [&](int row, int column) {
-    return ParseNumber(lines[row].words[column], path, lines[row].number,
-                       "camera matrix");
-  };
-  const cv::Mat image = ReadImageFile(image_path);
-  const Camera camera = {image.cols,   image.rows,   number(0, 0),
-                         number(1, 1), number(0, 2), number(1, 2)};
-  RequireSound(camera.Check(), path + ": ");
-  return camera;
-}
-
 // ScanNet's exporter writes the identity. Any other matrix contains real
 // extrinsics, but in an undocumented convention, and is refused.
 void RequireIdentity(const fs::path& file) {
@@ -94,14 +75,14 @@ void RequireIdentity(const fs::path& file) {
 std::optional<CameraSetup> ScanNetCamera(const NumberedFolder& folder) {
   const fs::path intrinsic = folder.path / "intrinsic";
   const NumberedFrame& first = folder.frames.front();
-  CameraSetup setup(
-      ReadIntrinsicText(intrinsic / "intrinsic_color.txt", first.color_path));
+  CameraSetup setup(ReadCameraMatrix(
+      (intrinsic / "intrinsic_color.txt").string(), first.color_path));
   RequireIdentity(intrinsic / "extrinsic_color.txt");
   RequireIdentity(intrinsic / "extrinsic_depth.txt");
   const fs::path of_depth = intrinsic / "intrinsic_depth.txt";
   if (PathExists(of_depth)) {
-    setup.depth_camera =
-        DepthCamera{ReadIntrinsicText(of_depth, first.depth_path), Rigid3d()};
+    setup.depth_camera = DepthCamera{
+        ReadCameraMatrix(of_depth.string(), first.depth_path), Rigid3d()};
   }
   return setup;
 }
@@ -289,7 +270,8 @@ std::optional<CameraSetup> NumberedCamera(const NumberedLayout& layout,
               {"camera-intrinsics.txt", "camera_intrinsics.txt",
                "intrinsics.txt", "intrinsic.txt", "../camera-intrinsics.txt"});
   if (text.empty()) return std::nullopt;
-  return CameraSetup(ReadIntrinsicText(text, folder.frames.front().color_path));
+  return CameraSetup(
+      ReadCameraMatrix(text.string(), folder.frames.front().color_path));
 }
 
 std::vector<double> NumberedTimes(const NumberedFolder& folder) {

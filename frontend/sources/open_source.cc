@@ -81,6 +81,11 @@ const std::vector<SourceType>& Types() {
                   HasFile(options, "depth/0.exr");
          },
          OpenRecord3d},
+        {"sun3d",
+         "SUN3D, Redwood's scans (image/ or rgb/, and depth/ with "
+         "0000001-000000033369.png: number and microseconds)",
+         [](const SourceOptions& options) { return IsSun3d(options.path); },
+         OpenSun3d},
         // Never detected from a path.
         {"openni2", "OpenNI 2 camera (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},

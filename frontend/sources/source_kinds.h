@@ -27,6 +27,12 @@ bool IsNumbered(const NumberedLayout& layout, const std::string& folder);
 std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
                                           const SourceOptions& options);
 
+// Whether a folder has images of colour and depth with times in their names.
+bool IsSun3d(const std::string& folder);
+
+// Pairs the images of SUN3D or of Redwood's scans by the times in their names.
+std::unique_ptr<FrameSource> OpenSun3d(const SourceOptions& options);
+
 // Throws InputError also for inconsistent files and in a build without video;
 // Next throws it where the video ends too early.
 std::unique_ptr<FrameSource> OpenStrayScanner(const SourceOptions& options);
