@@ -96,10 +96,13 @@ DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
                    "'; give cam1 or a later one of a Kalibr file");
 }
 
-// Open3D: width, height and intrinsic_matrix, column by column.
+// Open3D: width, height and intrinsic_matrix, column by column; by hand it is
+// often written row by row.
 Camera ReadOpen3d(const YamlSection& file) {
   const std::vector<double> k = file.Numbers("intrinsic_matrix", {9});
-  return {file.Pixels("width"), file.Pixels("height"), k[0], k[4], k[6], k[7]};
+  const bool is_by_rows = k[6] == 0.0 && k[7] == 0.0;
+  return {file.Pixels("width"),  file.Pixels("height"), k[0], k[4],
+          k[is_by_rows ? 2 : 6], k[is_by_rows ? 5 : 7]};
 }
 
 // The camera of images that are turned upside down.

@@ -84,6 +84,9 @@ TEST(CameraFileTest, EveryLayoutIsRead) {
            "intrinsic_matrix": [525, 0, 0, 0, 526, 0, 319, 240, 1]})",
        {640, 480, 525, 526, 319, 240},
        1000.0},
+      {R"({"width": 640, "height": 480,
+           "intrinsic_matrix": [525, 0, 319, 0, 526, 240, 0, 0, 1]})",
+       {640, 480, 525, 526, 319, 240}},
       {kKalibr, kKalibrCamera}};
   const TempFolder folder;
   for (const auto& good : kCases) {
