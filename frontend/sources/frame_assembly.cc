@@ -15,14 +15,15 @@ namespace {
 cv::Size SizeOf(const Camera& camera) { return {camera.width, camera.height}; }
 
 void CheckSize(const FrameAssembly::Named& named, const cv::Size& size,
-               const char* camera) {
+               const char* camera, const char* advice) {
   if (named.image.size() == size) return;
   throw InputError(named.name +
-                   Format(": is %d x %d pixels, the %s has %d x %d; is it the "
-                          "right camera file or preset?",
+                   Format(": is %d x %d pixels, the %s has %d x %d; %s",
                           named.image.cols, named.image.rows, camera,
-                          size.width, size.height));
+                          size.width, size.height, advice));
 }
+
+constexpr char kOtherCamera[] = "is it the right camera file or preset?";
 
 // Raw depths after an offset (1/m) is added to their inverse.
 cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
@@ -74,9 +75,14 @@ cv::Mat FrameAssembly::Upright(const cv::Mat& image) const {
 
 Frame FrameAssembly::Make(Frame frame, const Named& gray, const cv::Mat& color,
                           const Named& depth) const {
-  CheckSize(gray, SizeOf(camera_.camera), "camera");
-  CheckSize(depth, depth_size_,
-            registration_ == nullptr ? "camera" : "depth camera");
+  CheckSize(gray, SizeOf(camera_.camera), "camera", kOtherCamera);
+  if (registration_ == nullptr) {
+    CheckSize(depth, depth_size_, "camera",
+              "if another camera took depth, give both (a Kalibr file: camera, "
+              "depth_camera)");
+  } else {
+    CheckSize(depth, depth_size_, "depth camera", kOtherCamera);
+  }
   frame.gray = Upright(gray.image);
   if (keep_color_) frame.color = Upright(color);
   frame.depth = registration_ == nullptr
@@ -97,7 +103,7 @@ Frame FrameAssembly::Read(Frame frame, const std::string& color_path,
   const std::string mask_path = MaskPath(color_path);
   if (mask_path.empty()) return made;
   const Named mask = {ReadGrayImageFile(mask_path, nullptr), mask_path};
-  CheckSize(mask, SizeOf(camera_.camera), "camera");
+  CheckSize(mask, SizeOf(camera_.camera), "camera", kOtherCamera);
   made.depth = made.depth.clone();  // it may be shared
   made.depth.setTo(0, Upright(mask.image) == 0);
   return made;
