@@ -171,9 +171,13 @@ class NumberedDataset final : public Dataset {
 
 }  // namespace
 
-bool IsNumbered(const NumberedLayout& layout, const std::string& folder) {
+bool HasNumberedColor(const NumberedLayout& layout, const std::string& folder) {
   return PathExists(fs::path(folder) / layout.mark) &&
-         !NumberedPaths(folder, layout.color).empty() &&
+         !NumberedPaths(folder, layout.color).empty();
+}
+
+bool IsNumbered(const NumberedLayout& layout, const std::string& folder) {
+  return HasNumberedColor(layout, folder) &&
          !NumberedPaths(folder, layout.depth).empty();
 }
 

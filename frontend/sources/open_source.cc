@@ -136,25 +136,53 @@ std::string Content(const std::string& folder) {
   return Join(some) + (count > kMaxNames ? ", ..." : "");
 }
 
+// What a path is, for a message; nothing if it is no recording.
+std::optional<std::string> Recognised(SourceOptions options,
+                                      const std::string& path) {
+  options.path = path;
+  for (const SourceType& type : Types()) {
+    if (type.recognises(options)) return path + ", which is " + type.what;
+  }
+  return std::nullopt;
+}
+
 // The first recording in the folders of a folder, by name, down to some levels:
 // archives often have a folder around it. Nothing if there is none.
-std::optional<std::string> FindBelow(SourceOptions options, int levels) {
+std::optional<std::string> FindBelow(const SourceOptions& options,
+                                     const std::string& path, int levels) {
   if (levels == 0) return std::nullopt;
   std::set<std::string> folders;
   std::error_code error;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(options.path, error)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
     if (entry.is_directory(error)) folders.insert(entry.path().string());
   }
   for (const std::string& folder : folders) {
-    options.path = folder;
-    for (const SourceType& type : Types()) {
-      if (type.recognises(options)) return folder + ", which is " + type.what;
-    }
-    const auto below = FindBelow(options, levels - 1);
-    if (below.has_value()) return below;
+    std::optional<std::string> found = Recognised(options, folder);
+    if (!found.has_value()) found = FindBelow(options, folder, levels - 1);
+    if (found.has_value()) return found;
   }
   return std::nullopt;
+}
+
+// The recording that a path was probably meant to name: it is below, or the
+// path is a part of it, such as its folder of images.
+std::optional<std::string> FindNear(const SourceOptions& options) {
+  constexpr int kLevels = 2;
+  const auto below = FindBelow(options, options.path, kLevels);
+  if (below.has_value()) return below;
+  const fs::path part_of = fs::path(options.path) / "..";
+  const std::string above = part_of.lexically_normal().string();
+  // Bags lie beside anything.
+  const bool is_bag =
+      IsBag(above, BagKind::kRos1) || IsBag(above, BagKind::kRos2);
+  return is_bag ? std::nullopt : Recognised(options, above);
+}
+
+// Throws what a folder lacks that has numbered colour images without depth.
+void RequireDepth(const SourceOptions& options) {
+  for (const NumberedLayout& layout : NumberedLayouts()) {
+    if (HasNumberedColor(layout, options.path)) OpenNumbered(layout, options);
+  }
 }
 
 }  // namespace
@@ -218,20 +246,18 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   if (!PathExists(options.path)) {
     throw InputError(options.path + ": no such file or folder");
   }
-  if (!fs::is_directory(options.path, error)) {
-    throw InputError(
-        options.path +
-        ": is not a supported recording; supported recordings: " + known);
+  std::string problem = options.path + ": is not a supported recording";
+  const bool is_folder = fs::is_directory(options.path, error);
+  if (is_folder) problem += ": contains " + Content(options.path);
+  if (const auto near = FindNear(options)) {
+    throw InputError(problem + "; give " + *near);
   }
-  const std::string problem = options.path +
-                              ": is not a supported recording: contains " +
-                              Content(options.path);
-  constexpr int kLevels = 2;
-  if (const auto below = FindBelow(options, kLevels)) {
-    throw InputError(problem + "; give " + *below);
-  }
+  RequireDepth(options);
+  if (!is_folder) problem += "; if it is an archive, unpack it";
   throw InputError(problem + "; supported recordings: " + known +
-                   " (give bags of different recordings one at a time)");
+                   (is_folder ? " (give bags of different recordings one at a "
+                                "time)"
+                              : ""));
 }
 
 }  // namespace rgbd_pose

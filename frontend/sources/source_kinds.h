@@ -23,6 +23,9 @@ std::unique_ptr<FrameSource> OpenBagSource(std::unique_ptr<BagReader> bag,
 // Whether a folder has the images and the mark of a layout.
 bool IsNumbered(const NumberedLayout& layout, const std::string& folder);
 
+// Whether it has the mark and the colour images at least.
+bool HasNumberedColor(const NumberedLayout& layout, const std::string& folder);
+
 // Pairs images of the same number; the time stamp is number / kNumberedRate.
 std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
                                           const SourceOptions& options);

@@ -390,6 +390,23 @@ TEST_F(NumberedDatasetTest, LeavesOutWhatHasNoPartner) {
   EXPECT_EQ(source->ground_truth().size(), 2u);
 }
 
+TEST_F(NumberedDatasetTest, SaysWhichDepthImagesAreMissing) {
+  Write("color/000000.png", ColorImage(0));
+  Write("depth/000000.jpg", ColorImage(0));  // for display
+  ExpectInputError([this] { OpenSource("auto", WithCamera()); },
+                   {folder_.path(), "none of its 1 colour images",
+                    "a depth image depth/123.png of the same number"});
+}
+
+TEST_F(NumberedDatasetTest, SaysWhatDepthOfAnotherSizeNeeds) {
+  Write("color/000000.png", ColorImage(0));
+  Write("depth/000000.png", cv::Mat(kHeight / 2, kWidth / 2, CV_16UC1));
+  const auto source = OpenSource("auto", WithCamera());
+  ExpectInputError([&] { source->Next()->read(); },
+                   {"000000.png: is 16 x 12 pixels, the camera has 32 x 24; if "
+                    "another camera took depth, give both"});
+}
+
 TEST_F(NumberedDatasetTest, TakesADepthScaleThatIsAskedFor) {
   WriteSevenScenes();
   SourceOptions options = WithCamera();

@@ -29,17 +29,18 @@ TEST_F(OpenSourceTest, GivesTheFramesInOrderByAnyName) {
 TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
   ExpectInputError([&] { OpenSource("lidar", options_); },
                    {"unknown source 'lidar'", "auto", "tum"});
-  options_.path = folder_ / "rgb/0.png";
-  ExpectInputError(
-      [&] { OpenSource("auto", options_); },
-      {options_.path, "not a supported recording", "rgb.txt and depth.txt"});
   const TempFolder other;
+  options_.path = other.Write("recording.zip", "");
+  ExpectInputError([&] { OpenSource("auto", options_); },
+                   {options_.path, "not a supported recording",
+                    "if it is an archive, unpack it", "rgb.txt and depth.txt"});
   std::filesystem::create_directory(other / "images");
   other.Write("notes.txt", "");
   options_.path = other.path();
   ExpectInputError(
       [&] { OpenSource("auto", options_); },
-      {options_.path, "contains images/, notes.txt; supported recordings",
+      {options_.path,
+       "contains images/, notes.txt, recording.zip; supported recordings",
        "7-Scenes"});
   options_.path = folder_ / "nowhere";
   ExpectInputError([&] { OpenSource("auto", options_); },
@@ -55,6 +56,15 @@ TEST_F(OpenSourceTest, NamesARecordingInAFolderOfTheFolder) {
   ExpectInputError([&] { OpenSource("auto", options_); },
                    {"contains dataset/, empty/; give " + options_.path +
                     "/dataset/desk, which is TUM RGB-D"});
+}
+
+TEST_F(OpenSourceTest, NamesTheRecordingThatAPathIsAPartOf) {
+  for (const char* part : {"rgb", "rgb/", "depth.txt"}) {
+    options_.path = folder_ / part;
+    ExpectInputError([&] { OpenSource("auto", options_); },
+                     {options_.path, "is not a supported recording",
+                      "; give " + folder_.path(), ", which is TUM RGB-D"});
+  }
 }
 
 TEST_F(OpenSourceTest, RefusesOptionsOfOtherKindsOfRecordings) {
