@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <map>
-#include <opencv2/core.hpp>
 #include <optional>
 
 #include "core/util/format.h"
@@ -11,45 +9,13 @@
 #include "frontend/sources/frame_source.h"
 #include "frontend/sources/masks.h"
 #include "frontend/sources/numbered_layouts.h"
+#include "frontend/sources/numbered_paths.h"
 #include "frontend/sources/source_kinds.h"
 
 namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The number in the place of * in a name; nothing if it differs elsewhere. Old
-// cameras and file systems write names in capitals.
-std::optional<int> NumberIn(const std::string& file,
-                            const std::string& pattern) {
-  const std::string name = cv::toLowerCase(file);
-  const size_t star = pattern.find('*');
-  const size_t end = name.size() - (pattern.size() - star - 1);
-  if (name.size() < pattern.size() ||
-      name.compare(0, star, pattern, 0, star) != 0 ||
-      name.compare(end, name.npos, pattern, star + 1) != 0) {
-    return std::nullopt;
-  }
-  return ParseWhole(name.substr(star, end - star));
-}
-
-// Paths by number, of the first alternative with any images.
-std::map<int, std::string> NumberedPaths(
-    const std::string& folder, const std::vector<std::string>& choices) {
-  std::map<int, std::string> found;
-  for (const std::string& choice : choices) {
-    const fs::path pattern = choice;
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(
-             fs::path(folder) / pattern.parent_path(), error)) {
-      const std::optional<int> number = NumberIn(
-          entry.path().filename().string(), pattern.filename().string());
-      if (number.has_value()) found[*number] = entry.path().string();
-    }
-    if (!found.empty()) break;
-  }
-  return found;
-}
 
 // "color/123.jpg or rgb/123.png"
 std::string Examples(std::vector<std::string> choices) {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <opencv2/core.hpp>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/yaml_section.h"
 #include "frontend/sources/camera_matrix.h"
+#include "frontend/sources/numbered_paths.h"
 #include "frontend/sources/sensor_info.h"
 
 namespace rgbd_pose {
@@ -119,14 +119,15 @@ void AddPose(const std::vector<double>& m, int number, const std::string& path,
   (*poses)[number] = Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
 }
 
-// One file per frame, whose name has printf's place for the number: 4 rows of 4
-// numbers; -inf for a lost frame (7-Scenes, ScanNet).
-NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
+// One file per frame, by a pattern of NumberedPaths: 4 rows of 4 numbers; -inf
+// for a lost frame (7-Scenes, ScanNet).
+NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* pattern) {
+  const auto paths = NumberedPaths(folder.path.string(), {pattern});
   NumberedPoses poses;
   for (const NumberedFrame& frame : folder.frames) {
-    const std::string path =
-        (folder.path / Format(name, frame.number)).string();
-    if (!PathExists(path)) continue;
+    const auto found = paths.find(frame.number);
+    if (found == paths.end()) continue;
+    const std::string& path = found->second;
     // Infinite or NaN as Windows writes it, where # begins no comment.
     if (ReadTextFile(path).find("1.#") != std::string::npos) continue;
     std::vector<double> matrix;
@@ -142,7 +143,7 @@ NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
 }
 
 NumberedPoses ReadFramePoses(const NumberedFolder& folder) {
-  return ReadPoseFiles(folder, "frame-%06d.pose.txt");
+  return ReadPoseFiles(folder, "frame-*.pose.txt");
 }
 
 // The number of the image that the i-th of `count` poses belongs to: the i-th
@@ -211,7 +212,7 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {"depth/*.png"},
        1000.0,
        [](const NumberedFolder& folder) {
-         return ReadPoseFiles(folder, "pose/%d.txt");
+         return ReadPoseFiles(folder, "pose/*.txt");
        },
        ScanNetCamera,
        "intrinsic/intrinsic_color.txt"},

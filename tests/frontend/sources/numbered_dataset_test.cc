@@ -187,6 +187,17 @@ TEST_F(NumberedDatasetTest, ReadsScanNet) {
   ExpectPoses(*OpenSource("auto", Options()), 2);
 }
 
+// As some scripts write them.
+TEST_F(NumberedDatasetTest, ReadsPosesOfScanNetWithLeadingZeros) {
+  for (int k = 0; k < kFrames; ++k) {
+    Write("color/" + Padded(k) + ".jpg", ColorImage(k));
+    Write("depth/" + Padded(k) + ".png", DepthImage(k));
+    WriteText("pose/" + Padded(k) + ".txt", PoseText(k, "\n"));
+  }
+  WriteText("intrinsic/intrinsic_color.txt", kMatrix);
+  ExpectPoses(*ExpectRead("scannet", Options(), 1000.0));
+}
+
 TEST_F(NumberedDatasetTest, KnowsNotWhereScanNetsCamerasAre) {
   Write("color/0.jpg", ColorImage(0));
   Write("depth/0.png", DepthImage(0));
