@@ -86,6 +86,11 @@ const std::vector<SourceType>& Types() {
          "0000001-000000033369.png: number and microseconds)",
          [](const SourceOptions& options) { return IsSun3d(options.path); },
          OpenSun3d},
+        {"nerfstudio", "nerfstudio (transforms.json with depth_file_path)",
+         [](const SourceOptions& options) {
+           return IsNerfstudio(options.path);
+         },
+         OpenNerfstudio},
         // Never detected from a path.
         {"openni2", "OpenNI 2 camera (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},

@@ -30,6 +30,13 @@ bool HasNumberedColor(const NumberedLayout& layout, const std::string& folder);
 std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
                                           const SourceOptions& options);
 
+// Whether a folder has a transforms.json with depth.
+bool IsNerfstudio(const std::string& folder);
+
+// The images and poses in transforms.json, in its order, kNumberedRate a
+// second.
+std::unique_ptr<FrameSource> OpenNerfstudio(const SourceOptions& options);
+
 // Whether a folder has images of colour and depth with times in their names.
 bool IsSun3d(const std::string& folder);
 
