@@ -65,7 +65,9 @@ class TransformsFile {
   double DepthScale() const {
     const char* const key = "depth_unit_scale_factor";
     const double metres = file_.NumberOr(key, 0.001);
-    if (!(metres > 0.0)) file_.Fail(key, "must be positive");
+    if (!(metres > 1e-6 && metres <= 1.0)) {
+      file_.Fail(key, "must be the metres of a unit of depth, such as 0.001");
+    }
     return std::round(1e6 / metres) / 1e6;
   }
 

@@ -34,8 +34,8 @@ class InfoFile {
   // A camera: its size is in `image`Width, its matrix in `lens`Intrinsic.
   Camera ReadCamera(const std::string& image, const std::string& lens) const {
     const Matrix4 k = Matrix(lens + "Intrinsic");
-    const Camera camera = {static_cast<int>(Number(image + "Width")),
-                           static_cast<int>(Number(image + "Height")),
+    const Camera camera = {Pixels(image + "Width"),
+                           Pixels(image + "Height"),
                            k(0, 0),
                            k(1, 1),
                            k(0, 2),
@@ -45,6 +45,16 @@ class InfoFile {
   }
 
  private:
+  int Pixels(const std::string& key) const {
+    constexpr double kMost = 1 << 16;
+    const double number = Number(key);
+    if (!(number >= 1.0 && number <= kMost)) {
+      throw InputError(path_, Find(key)->number,
+                       key + " must be a number of pixels");
+    }
+    return static_cast<int>(number);
+  }
+
   // The line of a key; null: there is none.
   const TextLine* Find(const std::string& key) const {
     for (const TextLine& line : lines_) {

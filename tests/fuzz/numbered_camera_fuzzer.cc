@@ -11,7 +11,7 @@ FUZZ_TARGET(numbered_camera) {
       std::filesystem::create_directory(folder.path() + "/intrinsic");
   Require(has_folder, "a folder of cameras");
   for (const char* name : {"camera_intrinsic.json", "cam_params.json",
-                           "intrinsic/intrinsic_color.txt"}) {
+                           "info.txt", "intrinsic/intrinsic_color.txt"}) {
     folder.Write(name, FuzzText(data, size));
   }
   for (const NumberedLayout& layout : NumberedLayouts()) {

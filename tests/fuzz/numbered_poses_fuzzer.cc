@@ -11,7 +11,7 @@ FUZZ_TARGET(numbered_poses) {
   Require(has_folder, "a folder of poses");
   const std::string_view text = FuzzText(data, size);
   for (const char* name : {"frame-000001.pose.txt", "pose/1.txt", "traj.txt",
-                           "trajectory.log", "a.gt.freiburg"}) {
+                           "traj_w_c.txt", "trajectory.log", "a.gt.freiburg"}) {
     folder.Write(name, text);
   }
   for (const NumberedLayout& layout : NumberedLayouts()) {

@@ -15,7 +15,7 @@ constexpr int kFrames = 3;
 constexpr char kCamera[] =
     R"("camera_model": "OPENCV", "w": 32, "h": 24, "fl_x": 30, "fl_y": 31,
        "cx": 16, "cy": 12, "k1": 0.01, "p2": 0.002,
-       "depth_unit_scale_factor": 0.0005)";
+       "depth_unit_scale_factor": )";
 
 class NerfstudioTest : public testing::Test {
  protected:
@@ -35,6 +35,10 @@ class NerfstudioTest : public testing::Test {
                    "transform_matrix": [[1, 0, 0, 0]]})";
   }
 
+  static std::string CameraWith(const char* unit) {
+    return kCamera + std::string(unit);
+  }
+
   void WriteTransforms(const std::string& camera, const std::string& frames) {
     folder_.Write("transforms.json",
                   "{" + camera + ", \"frames\": [" + frames + "]}");
@@ -51,7 +55,7 @@ class NerfstudioTest : public testing::Test {
 };
 
 TEST_F(NerfstudioTest, ReadsImagesCameraAndPoses) {
-  WriteTransforms(kCamera, frames_);
+  WriteTransforms(CameraWith("0.0005"), frames_);
   const auto source = Open();
   const Camera& camera = source->camera().camera;
   EXPECT_EQ(camera.width, 32);
@@ -78,7 +82,7 @@ TEST_F(NerfstudioTest, ReadsImagesCameraAndPoses) {
 TEST_F(NerfstudioTest, RefusesWhatItCannotUse) {
   WriteTransforms(R"("w": 32)", frames_);
   ExpectInputError([this] { Open(); }, {"contains no camera calibration"});
-  WriteTransforms(kCamera, R"({"file_path": "images/0.png"})");
+  WriteTransforms(CameraWith("0.0005"), R"({"file_path": "images/0.png"})");
   ExpectInputError([this] { Open(); }, {"is not a supported recording"});
   SourceOptions options;
   options.path = folder_.path();
@@ -87,11 +91,14 @@ TEST_F(NerfstudioTest, RefusesWhatItCannotUse) {
   const std::string files =
       R"({"file_path": "images/0.png", "depth_file_path": "depth/0.png",
           "transform_matrix": )";
-  WriteTransforms(kCamera, files + "[[1, 0, 0, 0], [0, 1, 0, 0]]}");
+  WriteTransforms(CameraWith("0.0005"),
+                  files + "[[1, 0, 0, 0], [0, 1, 0, 0]]}");
   ExpectInputError([this] { Open(); }, {"transform_matrix needs 4 x 4"});
-  WriteTransforms(kCamera,
+  WriteTransforms(CameraWith("0.0005"),
                   files + "[[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]}");
   ExpectInputError([this] { Open(); }, {"transform_matrix: is not a pose"});
+  WriteTransforms(CameraWith("0"), frames_);
+  ExpectInputError([this] { Open(); }, {"depth_unit_scale_factor"});
   WriteTransforms("\"camera_model\": \"EQUIRECTANGULAR\", \"fl_x\": 1",
                   frames_);
   ExpectInputError([this] { Open(); }, {"camera_model"});

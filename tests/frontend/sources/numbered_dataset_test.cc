@@ -150,6 +150,8 @@ TEST_F(NumberedDatasetTest, ReadsBundleFusion) {
   };
   expect_bad_info("made by hand\n", "has no m_calibrationColorIntrinsic");
   expect_bad_info("m_calibrationColorIntrinsic = 1\n", ":1: ");
+  expect_bad_info("m_colorWidth = 1e300\n" + SensorInfo(identity),
+                  ":1: m_colorWidth must be a number of pixels");
   expect_bad_info(SensorInfo("1 0 0 0.1 0 1 0 0 0 0 1 0 0 0 0 1\n"),
                   "m_calibrationDepthExtrinsic must be the identity");
 }
