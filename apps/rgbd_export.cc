@@ -45,7 +45,7 @@ ProgramInfo Info(ExportSettings* settings) {
 
 int Main(const ExportSettings& settings, const ProgramInfo& /*info*/) {
   const auto& [folder, map, dataset, camera, to, options] = settings;
-  RequireFlag("run or --map", folder + map);
+  RequireFlag("map or --run", folder + map);
   RequireFlag("to", to);
   if (!map.empty() && !(folder + dataset + camera).empty()) {
     throw InputError(

@@ -247,6 +247,8 @@ TEST_F(BadInputTest, Export) {
           {"--to=obj",
            "unknown format 'obj'; available: mesh, cloud, colmap, nerfstudio"},
           {"--run={dir}/none", "--run: {dir}/none: no such folder"},
+          {"--run= --map={dir}/none", "{dir}/none: no such folder; choose a"},
+          {"--map={dir}/none", "--map: a map has its own images; leave out"},
           {"--to=mesh --output={dir}/mesh.obj",
            "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
           {"--to=mesh --output={dir}/none/mesh.ply",
