@@ -97,7 +97,9 @@ constexpr double kKinectDepthReadout = 0.027;
 // TUM RGB-D benchmark, "intrinsic camera calibration" table; its depth factors
 // are already applied in the released images. The lead of depth over
 // colour (s) depends on the driver: 15 to 20 ms for freiburg1, 0 to 5 ms for
-// freiburg3, unknown for freiburg2.
+// freiburg3, unknown for freiburg2. The RGB-D Dynamic dataset of the University
+// of Bonn has the sensor of freiburg3 (an Xtion), which is assumed to be read
+// in the same way; its intrinsics are those of its page.
 RgbdCamera TumCamera(const Camera& camera, double depth_lead) {
   constexpr Shutter kColor = {-0.0075, kKinectColorReadout, true};
   return {camera,
@@ -129,6 +131,10 @@ const Named<RgbdCamera> kPresets[] = {
                 0.231222, -0.784899, -0.003257, -0.000105, 0.917205},
                0.0)},
     {"tum_fr3", TumCamera({640, 480, 535.4, 539.2, 320.1, 247.6}, 0.0025)},
+    {"bonn",
+     TumCamera({640, 480, 542.822841, 542.576870, 315.593520, 237.756098,
+                0.039903, -0.099343, -0.000730, -0.000144, 0.0},
+               0.0025)},
     {"kinect", KinectCamera({640, 480, 525.0, 525.0, 319.5, 239.5})},
     {"7scenes", KinectCamera({640, 480, 585.0, 585.0, 320.0, 240.0})},
     {"ros_default", {}},  // the defaults

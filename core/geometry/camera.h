@@ -143,7 +143,8 @@ struct RgbdCamera {
 };
 
 // A camera by name: tum_fr1, tum_fr2, tum_fr3 (TUM RGB-D benchmark, calibration
-// page; depth noise kinect), ros_default. Empty if the name is unknown.
+// page; depth noise kinect), bonn (RGB-D Dynamic dataset), kinect, 7scenes,
+// ros_default. Empty if the name is unknown.
 std::optional<RgbdCamera> CameraPreset(std::string_view name);
 
 // The names that CameraPreset knows.

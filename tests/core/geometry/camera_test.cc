@@ -129,5 +129,11 @@ TEST(CameraTest, UnknownPresetIsEmpty) {
   EXPECT_TRUE(CameraPreset("tum_fr3").has_value());
 }
 
+TEST(CameraTest, PresetsAreSound) {
+  for (const std::string& name : CameraPresetNames()) {
+    EXPECT_EQ(CameraPreset(name)->camera.Check(), "") << name;
+  }
+}
+
 }  // namespace
 }  // namespace rgbd_pose
