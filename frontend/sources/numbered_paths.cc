@@ -12,11 +12,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number in the place of * in a name; nothing if it differs elsewhere. Old
-// cameras and file systems write names in capitals.
+// A name as patterns have it: old cameras and file systems write capitals, and
+// some tools .jpeg for .jpg.
+std::string UsualName(const std::string& file) {
+  fs::path name = cv::toLowerCase(file);
+  if (name.extension() == ".jpeg") name.replace_extension(".jpg");
+  return name.string();
+}
+
+// The number in the place of * in a name; nothing if it differs elsewhere.
 std::optional<int> NumberIn(const std::string& file,
                             const std::string& pattern) {
-  const std::string name = cv::toLowerCase(file);
+  const std::string name = UsualName(file);
   const size_t star = pattern.find('*');
   const size_t end = name.size() - (pattern.size() - star - 1);
   if (name.size() < pattern.size() ||

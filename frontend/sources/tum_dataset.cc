@@ -56,7 +56,10 @@ std::vector<TextLine> ReadLines(const std::string& list, size_t columns,
       throw InputError(list, line.number,
                        "needs " + std::to_string(columns) + " columns (" +
                            wanted + "), has " +
-                           std::to_string(line.words.size()) + ": " +
+                           std::to_string(line.words.size()) +
+                           (line.words.size() > columns
+                                ? "; names of images must not have spaces: "
+                                : ": ") +
                            Quote(line));
     }
   }
@@ -255,7 +258,9 @@ CameraSetup ReadCalibrationText(const std::string& path,
                                 const std::string& first_image) {
   const std::vector<TextLine> lines = ReadTextTable(path);
   if (lines.empty() || lines.front().words.size() != 4) {
-    throw InputError(path + ": needs one line, fx fy cx cy");
+    throw InputError(path +
+                     ": needs one line, fx fy cx cy; for a lens with "
+                     "distortion give a camera file (--camera)");
   }
   double numbers[4];
   for (int i = 0; i < 4; ++i) {

@@ -201,6 +201,8 @@ TEST_F(BadInputTest, Lists) {
                   "{seq}/depth.txt: missing"},
                  {"binary", Text("rgb.txt", std::string("\0\x01\xFF\n\x7F", 5)),
                   "", 2, kRgb + ":1: needs 2 columns"},
+                 {"a name with a space", Text("rgb.txt", "1 rgb/my 1.png\n"),
+                  "", 2, "names of images must not have spaces: '1 rgb/my 1"},
                  {"intervals for times",
                   Text("rgb.txt", "0.033 a\n0.034 b\n0.033 c\n0.033 d\n"), "",
                   2, kRgb + ":3: the times look like intervals between images"},

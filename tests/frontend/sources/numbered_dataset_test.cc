@@ -265,12 +265,12 @@ TEST_F(NumberedDatasetTest, ReadsSemanticNerf) {
   ExpectPoses(*ExpectRead("semantic_nerf", WithCamera(), 1000.0));
 }
 
-TEST_F(NumberedDatasetTest, ReadsNamesInCapitals) {
+TEST_F(NumberedDatasetTest, ReadsNamesInCapitalsAndJpeg) {
   for (int k = 0; k < kFrames; ++k) {
     Write("color/" + Padded(k) + ".jpg", ColorImage(k));
     Write("depth/" + Padded(k) + ".png", DepthImage(k));
     fs::rename(folder_ / ("color/" + Padded(k) + ".jpg"),
-               folder_ / ("color/" + Padded(k) + ".JPG"));
+               folder_ / ("color/" + Padded(k) + (k > 0 ? ".JPG" : ".jpeg")));
     fs::rename(folder_ / ("depth/" + Padded(k) + ".png"),
                folder_ / ("depth/" + Padded(k) + ".PNG"));
   }
