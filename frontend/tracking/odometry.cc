@@ -50,16 +50,6 @@ bool IsSlow(const CameraTurn& turn, const MotionMatrix& acceleration) {
          acceleration(0, 0) <= kLargestBend * kLargestBend;
 }
 
-void RequireSize(const Frame& frame, const Camera& camera) {
-  const cv::Size size(camera.width, camera.height);
-  if (frame.gray.size() != size || frame.depth.size() != size) {
-    throw InputError(
-        Format("odometry: grey and depth image must have the size of the "
-               "camera, %d x %d",
-               size.width, size.height));
-  }
-}
-
 // The pose follows the guess while tracking is lost.
 void RequireFinite(const Rigid3d* guess, const MotionMatrix* covariance) {
   if (guess == nullptr) return;
@@ -109,7 +99,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
   PreparedFrame frame = measured;
-  RequireSize(frame, tracker_->images().camera);
+  RequireSize(frame);
   RequireFinite(cur_from_prev_guess, guess_covariance);
   TrackedFrame result;
   result.index = num_frames_++;
@@ -132,6 +122,17 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   Learn(frame, result);
   KeepLast(frame, &result);
   return result;
+}
+
+void Odometry::RequireSize(const Frame& frame) const {
+  const Camera& camera = tracker_->images().camera;
+  const cv::Size size(camera.width, camera.height);
+  if (frame.gray.size() != size || frame.depth.size() != size) {
+    throw InputError(
+        Format("odometry: grey and depth image must have the size of the "
+               "camera, %d x %d",
+               size.width, size.height));
+  }
 }
 
 void Odometry::Begin(const Frame& frame) {

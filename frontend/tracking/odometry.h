@@ -117,7 +117,8 @@ class Odometry {
   // lost frame is searched for there first. Its id: the index of the frame if
   // it was tracked here, else below -1. Its pose: in the world of these poses.
   // Its segment is ignored. Returns false and changes nothing if the frame has
-  // too few features or depths.
+  // too few features or depths. Throws InputError if its images cannot be
+  // decoded or do not have the camera's size.
   bool InsertKeyframe(const Keyframe& inserted);
 
   // The pose after the last frame, even if that was lost (see LostPolicy).
@@ -167,6 +168,9 @@ class Odometry {
     Rigid3d cur_from_ref;  // of its last pose
     double left_at = 0.0;  // time stamp of the first new frame, s
   };
+
+  // Throws InputError if the images do not have the size of the camera.
+  void RequireSize(const Frame& frame) const;
 
   // The stages of Track, in this order. The first sets what is known of the
   // frame's times before its images are looked at.

@@ -99,6 +99,7 @@ bool Odometry::InsertKeyframe(const Keyframe& inserted) {
     added.segment = state_.segment;
     added.frame = inserted.Unpacked();
     added.images = {};
+    RequireSize(added.frame);
     return AddKeyframe(std::move(added), nullptr, state_.reference, &why_not) !=
            nullptr;
   }

@@ -45,6 +45,11 @@ TEST(OdometryTest, RefusesImagesOfAnotherSize) {
   frame.depth = frame.depth.rowRange(0, 240);
   ExpectInputError([&] { odometry.Track(frame); },
                    {"the size of the camera, 640 x 480"});
+  Keyframe keyframe;
+  keyframe.id = -2;
+  keyframe.frame = PreparedFrame(frame);
+  ExpectInputError([&] { odometry.InsertKeyframe(keyframe); },
+                   {"the size of the camera, 640 x 480"});
 }
 
 // While tracking is lost, the pose follows guesses.
