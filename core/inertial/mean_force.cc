@@ -46,8 +46,10 @@ bool ForceMeter::AddUp(const Trajectory& path, size_t from, size_t to,
            path[pose + 1].timestamp + delay <= stamp) {
       ++pose;
     }
-    const double part = (stamp - delay - path[pose].timestamp) /
-                        (path[pose + 1].timestamp - path[pose].timestamp);
+    // The last two poses may have one stamp.
+    const double length = path[pose + 1].timestamp - path[pose].timestamp;
+    const double part =
+        length > 0.0 ? (stamp - delay - path[pose].timestamp) / length : 0.0;
     const Eigen::Quaterniond world_from_cam =
         path[pose].world_from_cam.rotation.slerp(
             part, path[pose + 1].world_from_cam.rotation);

@@ -63,6 +63,15 @@ TEST(ForceMeterTest, FramesMayBeMissing) {
   EXPECT_LT(shaken.ErrorOf(*force), 0.15);
 }
 
+TEST(ForceMeterTest, TheLastTwoPosesMayHaveOneStamp) {
+  Shaken shaken;
+  shaken.path.resize(127);
+  shaken.path.push_back(shaken.path.back());
+  const auto force = shaken.Meter().At(shaken.path, 100);
+  ASSERT_TRUE(force.has_value());
+  EXPECT_LT(shaken.ErrorOf(*force), 0.15);
+}
+
 TEST(ForceMeterTest, MeasuresNothingWithoutPosesOrSamplesThroughout) {
   const Shaken shaken;
   const ForceMeter meter = shaken.Meter();
