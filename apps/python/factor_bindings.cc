@@ -176,6 +176,7 @@ linear_density: the same of the linear velocity, m/s^2/sqrt(Hz).)",
   factor(
       "DistanceFactor",
       [](double metres, double sigma, const object& in_a, const object& in_b) {
+        if (metres < 0.0) throw InputError("metres: must not be negative");
         return DistanceFactor{
             Finite(metres, "metres"), Positive(sigma, "sigma"),
             VectorFrom<3>(in_a, "in_a"), VectorFrom<3>(in_b, "in_b")};

@@ -282,6 +282,7 @@ def test_each_factor_measures_what_it_says(name):
     (lambda: rgbd_pose.GravityFactor(DOWN, DOWN, 0.0),
      "sigma: must be a positive number"),
     (lambda: rgbd_pose.DistanceFactor(np.inf), "metres: is not finite"),
+    (lambda: rgbd_pose.DistanceFactor(-1.0), "metres: must not be negative"),
     (lambda: rgbd_pose.MapPlaneFactor(DOWN, 2.0 * DOWN, 0.0),
      "normal: must be of length 1"),
     (lambda: rgbd_pose.PairFactor(random_points(9), random_points(8)),
