@@ -24,9 +24,10 @@ class RandomWorld {
     return std::uniform_real_distribution<double>(low, high)(generator_);
   }
 
-  // A number with mean 0 and this standard deviation, normally distributed.
+  // A number with mean 0 and this standard deviation, which may be 0, normally
+  // distributed.
   double Normal(double sigma) {
-    return std::normal_distribution<double>(0.0, sigma)(generator_);
+    return sigma * std::normal_distribution<double>()(generator_);
   }
 
   // A vector in the cube of -size to size.
