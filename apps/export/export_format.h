@@ -60,7 +60,8 @@ struct FinishedRun {
 
 // The largest connected part of a map: the frames are its keyframes, numbered
 // by their ids. If two of them have the same stamp, as a map that several
-// recordings have made may have, stamps are counted from 0 s, a second apart.
+// recordings have made may have, stamps are counted from 0 s, a second apart. A
+// map does not keep the noise of depth: that of an unknown camera is taken.
 // Throws InputError for a folder without a map, and for an empty or damaged
 // one.
 FinishedRun MapAsRun(const std::string& folder);

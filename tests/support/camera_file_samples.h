@@ -1,5 +1,9 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <string>
+
 namespace rgbd_pose {
 
 // Typical camera files, shortened.
@@ -67,5 +71,14 @@ constexpr char kKalibr[] =
     "  rostopic: /camera/color/image_raw\n"
     "cam1:\n"
     "  camera_model: omni\n";
+
+// The text with its first `from` replaced; a failure without one.
+inline std::string Replace(std::string text, const std::string& from,
+                           const std::string& to) {
+  const size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  if (place != std::string::npos) text.replace(place, from.size(), to);
+  return text;
+}
 
 }  // namespace rgbd_pose
