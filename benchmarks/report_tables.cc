@@ -91,8 +91,7 @@ std::string SolveRows(const BenchmarkResults& results) {
     const BenchmarkResult* result =
         results.Find("solve/" + name + "/huber/300");
     if (result == nullptr) continue;
-    text += Row({"`" + assembly + "`", TimeWithQuartiles(*result),
-                 Count(*result, "evaluations")});
+    text += Row({"`" + assembly + "`", TimeWithQuartiles(*result)});
   }
   return text;
 }
@@ -179,10 +178,9 @@ std::string FrameRows(const BenchmarkResults& results) {
       const BenchmarkResult* result =
           results.Find("frames/" + sequence + "/" + method);
       if (result == nullptr) continue;
-      text +=
-          Row({"`" + sequence + "`", Count(*result, "frames"),
-               std::string("`") + method + "`", Time(result),
-               Counter(*result, "ate_m", 1e3), Counter(*result, "rpe_m", 1e3)});
+      text += Row({"`" + sequence + "`", std::string("`") + method + "`",
+                   Time(result), Counter(*result, "ate_m", 1e3),
+                   Counter(*result, "rpe_m", 1e3)});
     }
   }
   return text;

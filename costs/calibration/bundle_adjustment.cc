@@ -9,9 +9,15 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <memory>
+#include <vector>
 
+#include "core/factors/blocks.h"
+#include "core/factors/factor.h"
+#include "core/factors/pose_manifold.h"
 #include "core/util/quantile.h"
-#include "costs/calibration/landmark_block.h"
+#include "costs/calibration/landmark_factors.h"
+#include "costs/calibration/scaled_distance.h"
 
 namespace rgbd_pose {
 namespace {
@@ -43,62 +49,55 @@ class IterationReport : public ceres::IterationCallback {
   std::exception_ptr thrown_;
 };
 
-// The problem that Ceres solves: depths are those of the state, all other
-// unknowns are relative to it.
+// The problem that Ceres solves.
 class AdjustmentProblem {
  public:
-  // `views` and `state` must outlive the problem. `y`: see CalibrationOrigin.
+  // `views` and `state` must outlive the problem.
   AdjustmentProblem(const CalibrationViews& views,
-                    const CalibrationOrigin& origin, const CalibrationVector& y,
-                    CalibrationState* state)
+                    const CalibrationOrigin& origin, CalibrationState* state)
       : views_(views),
-        origin_(origin),
+        model_(std::make_shared<CalibrationModel>(
+            CalibrationModel{views.camera, origin})),
         state_(*state),
-        x_(state->world_from_cam.size(), MotionVector::Zero()),
-        y_(y),
+        y_(origin.NumbersOf(state->theta)),
         loss_(kLandmarkLossWidth),
         problem_(Ownership()) {
     for (const Rigid3d& pose : state_.world_from_cam) {
-      origins_.emplace_back(pose.Inverse());
+      poses_.push_back(PoseVectorOf(pose));
     }
-    data_.reserve(views_.landmarks.size() + views_.views.size());
+    auto* const manifold = new PoseManifold();
+    for (PoseVector& pose : poses_) AddPose(pose.data(), &problem_, manifold);
   }
 
   void AddLandmarks(bool training_only) {
     for (size_t i = 0; i < views_.landmarks.size(); ++i) {
       const Landmark& landmark = views_.landmarks[i];
-      // Adds a residual of the measurements appended last.
-      const auto add = [&](auto residual, int keyframe) {
-        problem_.AddResidualBlock(
-            new LandmarkBlock<decltype(residual)>(origins_[landmark.anchor],
-                                                  origins_[keyframe], origin_,
-                                                  data_.back()),
-            &loss_, x_[landmark.anchor].data(), x_[keyframe].data(),
-            &state_.inverse_depths[i], y_.data());
-      };
-      data_.push_back(DataOf(views_, landmark, state_));
+      double* const anchor = poses_[landmark.anchor].data();
+      double* const inverse_depth = &state_.inverse_depths[i];
       bool is_used = false;
       for (int k = 0; k < landmark.num_views; ++k) {
         const LandmarkView& view = views_.views[landmark.first_view + k];
         if (!view.TakesPart(training_only)) continue;
-        // The view's pose is a dummy: an anchor's depth does not depend on it.
-        if (!is_used) add(AnchorDepth(), view.keyframe);
-        is_used = true;
-        data_.push_back(DataOf(views_, landmark, view, state_));
-        add(LandmarkPixel(), view.keyframe);
-        if (view.depth.inverse_sigma != 0.0) {
-          add(LandmarkDepth(), view.keyframe);
+        if (!is_used) {
+          Add(AnchorDepthFactor{model_, DataOf(views_, landmark, state_)},
+              &loss_, inverse_depth, y_.data());
         }
+        is_used = true;
+        const LandmarkData data = DataOf(views_, landmark, view, state_);
+        double* const there = poses_[view.keyframe].data();
+        Add(LandmarkPixelFactor{model_, data}, &loss_, anchor, there,
+            inverse_depth, y_.data());
+        if (view.depth.inverse_sigma == 0.0) continue;
+        Add(LandmarkDepthFactor{model_, data}, &loss_, anchor, there,
+            inverse_depth, y_.data());
       }
     }
   }
 
   void AddDistances() {
     for (const KnownDistance& known : views_.distances) {
-      problem_.AddResidualBlock(
-          new KnownDistanceBlock(origins_[known.a], origins_[known.b], origin_,
-                                 known),
-          nullptr, x_[known.a].data(), x_[known.b].data(), y_.data());
+      Add(ScaledDistanceFactor{model_, known}, nullptr, poses_[known.a].data(),
+          poses_[known.b].data(), y_.data());
     }
   }
 
@@ -112,9 +111,7 @@ class AdjustmentProblem {
 
   // Fixes the first pose, and theta unless any of it is free.
   void Fix(const FreeParts& is_free) {
-    if (problem_.HasParameterBlock(x_[0].data())) {
-      problem_.SetParameterBlockConstant(x_[0].data());
-    }
+    problem_.SetParameterBlockConstant(poses_[0].data());
     if (is_free.none()) problem_.SetParameterBlockConstant(y_.data());
   }
 
@@ -122,13 +119,13 @@ class AdjustmentProblem {
   // another.
   ceres::ParameterBlockOrdering Elimination() {
     ceres::ParameterBlockOrdering ordering;
-    const auto add = [&](double* block, int group) {
-      if (!problem_.HasParameterBlock(block)) return;
-      ordering.AddElementToGroup(block, group);
-    };
-    for (double& depth : state_.inverse_depths) add(&depth, 0);
-    for (MotionVector& pose : x_) add(pose.data(), 1);
-    add(y_.data(), 1);
+    for (double& depth : state_.inverse_depths) {
+      if (problem_.HasParameterBlock(&depth)) {
+        ordering.AddElementToGroup(&depth, 0);
+      }
+    }
+    for (PoseVector& pose : poses_) ordering.AddElementToGroup(pose.data(), 1);
+    ordering.AddElementToGroup(y_.data(), 1);
     return ordering;
   }
 
@@ -136,11 +133,10 @@ class AdjustmentProblem {
 
   // Brings the solution into the state.
   void TakeSolution() {
-    for (size_t i = 0; i < x_.size(); ++i) {
-      state_.world_from_cam[i] =
-          origins_[i].CurFromPrev(x_[i].data()).Inverse();
+    for (size_t i = 0; i < poses_.size(); ++i) {
+      state_.world_from_cam[i] = RigidOf(poses_[i]);
     }
-    state_.theta = origin_.At(y_.data());
+    state_.theta = model_->origin.At(y_);
   }
 
  private:
@@ -150,13 +146,16 @@ class AdjustmentProblem {
     return options;
   }
 
+  template <typename Factor, typename... Blocks>
+  void Add(Factor factor, ceres::LossFunction* loss, Blocks... blocks) {
+    problem_.AddResidualBlock(MakeFactor(std::move(factor)), loss, blocks...);
+  }
+
   const CalibrationViews& views_;
-  const CalibrationOrigin origin_;
+  const std::shared_ptr<const CalibrationModel> model_;
   CalibrationState& state_;
-  std::vector<LinearizationPoint> origins_;  // of the poses
-  std::vector<MotionVector> x_;              // the poses, relative to these
+  std::vector<PoseVector> poses_;  // world_from_cam
   CalibrationVector y_;
-  std::vector<LandmarkData> data_;  // reserved: must not move
   ceres::CauchyLoss loss_;
   ceres::Problem problem_;
 };
@@ -183,29 +182,30 @@ CalibrationOrigin BundleAdjustment::OriginOf(
 }
 
 void BundleAdjustment::MeasureScales(CalibrationState* state) const {
-  const std::vector<MotionDerivatives> poses = PosesOf(*state);
   state->pixel_scale = state->depth_scale = 1.0;
+  const auto model =
+      std::make_shared<CalibrationModel>(CalibrationModel{views_.camera, {}});
+  const std::vector<PoseOf<double>> poses = PosesOf(*state);
+  const CalibrationVector& theta = state->theta;
   std::vector<double> pixels, depths;
   double r[2];
   for (size_t i = 0; i < views_.landmarks.size(); ++i) {
     const Landmark& landmark = views_.landmarks[i];
-    const double d = state->inverse_depths[i];
-    const RotationAndCenter<double>& anchor = poses[landmark.anchor];
-    AnchorDepth::Residual<double>(anchor, anchor, d, state->theta.data(),
-                                  DataOf(views_, landmark, *state), r);
+    const Eigen::Matrix<double, 1, 1> d(state->inverse_depths[i]);
+    const PoseOf<double>& anchor = poses[landmark.anchor];
+    AnchorDepthFactor{model, DataOf(views_, landmark, *state)}.Residual(
+        d, theta, r);
     depths.push_back(std::abs(r[0]));
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views_.views[landmark.first_view + k];
       if (!view.TakesPart(training_only_)) continue;
       const LandmarkData data = DataOf(views_, landmark, view, *state);
-      const RotationAndCenter<double>& there = poses[view.keyframe];
-      LandmarkPixel::Residual<double>(anchor, there, d, state->theta.data(),
-                                      data, r);
+      const PoseOf<double>& there = poses[view.keyframe];
+      LandmarkPixelFactor{model, data}.Residual(anchor, there, d, theta, r);
       pixels.push_back(std::abs(r[0]));
       pixels.push_back(std::abs(r[1]));
       if (data.depth.inverse_sigma == 0.0) continue;
-      LandmarkDepth::Residual<double>(anchor, there, d, state->theta.data(),
-                                      data, r);
+      LandmarkDepthFactor{model, data}.Residual(anchor, there, d, theta, r);
       depths.push_back(std::abs(r[0]));
     }
   }
@@ -220,13 +220,7 @@ void BundleAdjustment::MeasureScales(CalibrationState* state) const {
 
 double BundleAdjustment::Solve(const FreeParts& is_free,
                                CalibrationState* state) const {
-  CalibrationVector y;
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    y[k] =
-        is_free[k] ? (state->theta[k] - prior_.mean[k]) / prior_.sigma[k] : 0.0;
-  }
-  AdjustmentProblem adjustment(views_, OriginOf(is_free, state->theta), y,
-                               state);
+  AdjustmentProblem adjustment(views_, OriginOf(is_free, state->theta), state);
   adjustment.AddLandmarks(training_only_);
   adjustment.AddDistances();
   adjustment.AddPrior();

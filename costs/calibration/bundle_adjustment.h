@@ -5,11 +5,13 @@
 #include <optional>
 #include <utility>
 
-#include "core/geometry/motion.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/calibration_views.h"
 
 namespace rgbd_pose {
+
+// Width of Cauchy's loss on landmarks, in standard deviations.
+inline constexpr double kLandmarkLossWidth = 2.5;
 
 // The prior of theta, independent for each parameter.
 struct CalibrationPrior {

@@ -5,6 +5,10 @@
 #include <array>
 #include <bitset>
 #include <cmath>
+#include <string>
+
+#include "core/factors/blocks.h"
+#include "core/geometry/camera.h"
 
 namespace rgbd_pose {
 
@@ -99,21 +103,47 @@ inline double CalibrationFloor(int parameter, int keyframes) {
          std::sqrt(std::max(1.0, kMany / std::max(1, keyframes)));
 }
 
-// The solver's calibration parameters y, in standard deviations of the prior:
-// theta = start + width . y.
+// The numbers y of a CalibrationBlock in standard deviations of the prior:
+// theta = start + width . y. By default they are theta itself.
 struct CalibrationOrigin {
-  CalibrationVector start;  // theta at y = 0
-  CalibrationVector width;  // of one y; 0: the parameter is fixed
+  // theta at y = 0
+  CalibrationVector start = CalibrationVector::Zero();
+  // of one y; 0: the parameter is fixed
+  CalibrationVector width = CalibrationVector::Ones();
 
-  // theta at y, which has kCalibrationSize numbers.
+  // theta at y, for any scalar.
   template <typename T>
-  Eigen::Matrix<T, kCalibrationSize, 1> At(const T* y) const {
+  Eigen::Matrix<T, kCalibrationSize, 1> At(
+      const Eigen::Matrix<T, kCalibrationSize, 1>& y) const {
     Eigen::Matrix<T, kCalibrationSize, 1> theta;
     for (int k = 0; k < kCalibrationSize; ++k) {
       theta[k] = start[k] + width[k] * y[k];
     }
     return theta;
   }
+
+  // y at theta; 0 for fixed parameters.
+  CalibrationVector NumbersOf(const CalibrationVector& theta) const {
+    CalibrationVector y = CalibrationVector::Zero();
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      if (width[k] > 0.0) y[k] = (theta[k] - start[k]) / width[k];
+    }
+    return y;
+  }
+};
+
+// The calibration parameters as a block of a Ceres problem.
+struct CalibrationBlock : VectorBlock<kCalibrationSize> {
+  static constexpr char kName[] = "calibration";  // for messages
+
+  // A number of the block in words.
+  static std::string NameOf(int k) { return kCalibrationParameters[k].name; }
+};
+
+// What all factors of one CalibrationBlock share.
+struct CalibrationModel {
+  Camera camera;             // the lens' model, and what theta lacks of it
+  CalibrationOrigin origin;  // of the block's numbers
 };
 
 }  // namespace rgbd_pose

@@ -2,9 +2,11 @@
 
 #include <vector>
 
+#include "core/factors/blocks.h"
+#include "core/factors/distance.h"
 #include "core/geometry/camera.h"
-#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
+#include "core/geometry/twist.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/landmark_data.h"
 
@@ -35,15 +37,11 @@ struct Landmark : DepthPixel {
   int num_views = 0;
 };
 
-// The distance between two positions of the camera, known from another source;
-// it gives the images a scale. in_a and in_b are the positions in the axes of
-// keyframes a and b, as measured (kDepthFactor scales them to metres).
-struct KnownDistance {
+// A distance between two positions of the camera, known from another source; it
+// gives the images a scale. The positions are in the axes of keyframes a and b,
+// as measured (kDepthFactor scales them to metres).
+struct KnownDistance : DistanceFactor {
   int a = 0, b = 0;  // keyframes
-  Eigen::Vector3d in_a = Eigen::Vector3d::Zero();
-  Eigen::Vector3d in_b = Eigen::Vector3d::Zero();
-  double metres = 0.0;
-  double sigma = 0.01;  // m
 };
 
 // The input of a calibration.
@@ -66,12 +64,11 @@ struct CalibrationState {
   double depth_scale = 1.0;
 };
 
-// The poses of a state's keyframes (cam from world), with their derivatives by
-// an additional motion, at zero motion.
-inline std::vector<MotionDerivatives> PosesOf(const CalibrationState& state) {
-  std::vector<MotionDerivatives> poses;
+// The poses of a state's keyframes, as factors read them.
+inline std::vector<PoseOf<double>> PosesOf(const CalibrationState& state) {
+  std::vector<PoseOf<double>> poses;
   for (const Rigid3d& pose : state.world_from_cam) {
-    poses.push_back(DerivativesAt(pose.Inverse()));
+    poses.push_back(PoseFrom(pose));
   }
   return poses;
 }
@@ -88,7 +85,6 @@ inline LandmarkData DataOf(const CalibrationViews& views,
                            const Landmark& landmark,
                            const CalibrationState& state) {
   LandmarkData data;
-  data.rest = &views.camera;
   data.anchor_u = landmark.u;
   data.anchor_v = landmark.v;
   data.anchor_motion = MotionAt(views, landmark.anchor, landmark.v);

@@ -1,8 +1,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <memory>
+#include <type_traits>
+#include <vector>
 
+#include "core/factors/blocks.h"
 #include "costs/calibration/bundle_adjustment.h"
-#include "costs/calibration/landmark_block.h"
+#include "costs/calibration/landmark_factors.h"
+#include "costs/calibration/scaled_distance.h"
 
 namespace rgbd_pose {
 namespace {
@@ -13,8 +18,8 @@ constexpr double kMinSlope = 0.2;
 // The normal equations of one landmark at a time.
 class OneLandmark {
  public:
-  OneLandmark(const CalibrationOrigin& origin, ReducedCameraSystem* equations)
-      : origin_(origin), equations_(*equations) {}
+  explicit OneLandmark(ReducedCameraSystem* equations)
+      : equations_(*equations) {}
 
   void Begin(const Landmark& landmark) {
     anchor_ = landmark.anchor;
@@ -30,25 +35,28 @@ class OneLandmark {
   int num_views() const { return static_cast<int>(keyframes_.size()); }
 
   // Adds a residual of the view begun last.
-  template <typename Derivatives, typename Residual>
-  void Add(const Derivatives& J, const Residual& r) {
+  template <int kRows>
+  void Add(const Eigen::Matrix<double, kRows, 1>& r,
+           const TangentJacobian<kRows, PoseBlock>& by_anchor,
+           const TangentJacobian<kRows, PoseBlock>& by_view,
+           const TangentJacobian<kRows, InverseDepthBlock>& by_depth,
+           const TangentJacobian<kRows, CalibrationBlock>& by_y) {
     const double weight = WeightOf(r);
-    Eigen::Matrix<double, Residual::RowsAtCompileTime, kFixed> head;
-    head << J.anchor, J.theta * origin_.width.asDiagonal();
+    Eigen::Matrix<double, kRows, kFixed> head;
+    head << by_anchor, by_y;
     local_.topLeftCorner<kFixed, kFixed>().noalias() +=
         weight * head.transpose() * head;
-    by_depth_.head<kFixed>() += weight * head.transpose() * J.inverse_depth;
+    by_depth_.head<kFixed>() += weight * head.transpose() * by_depth;
     gradient_.head<kFixed>() += weight * head.transpose() * r;
-    hessian_d_ += weight * J.inverse_depth.squaredNorm();
-    gradient_d_ += weight * J.inverse_depth.dot(r);
+    hessian_d_ += weight * by_depth.squaredNorm();
+    gradient_d_ += weight * by_depth.dot(r);
     const int place = kFixed + 6 * (num_views() - 1);
     local_.block<6, kFixed>(place, 0).noalias() +=
-        weight * J.view.transpose() * head;
+        weight * by_view.transpose() * head;
     local_.block<6, 6>(place, place).noalias() +=
-        weight * J.view.transpose() * J.view;
-    by_depth_.segment<6>(place) +=
-        weight * J.view.transpose() * J.inverse_depth;
-    gradient_.segment<6>(place) += weight * J.view.transpose() * r;
+        weight * by_view.transpose() * by_view;
+    by_depth_.segment<6>(place) += weight * by_view.transpose() * by_depth;
+    gradient_.segment<6>(place) += weight * by_view.transpose() * r;
   }
 
   // Eliminates the depth, which is optimal for any values of the other
@@ -110,7 +118,6 @@ class OneLandmark {
     return weight;
   }
 
-  const CalibrationOrigin& origin_;
   ReducedCameraSystem& equations_;
   int anchor_ = 0;
   std::vector<int> keyframes_;  // of the views
@@ -123,21 +130,27 @@ class OneLandmark {
 // A known distance among the unknowns of a ReducedCameraSystem.
 struct DistanceEquation {
   int place_a, place_b;  // of the poses; negative: the first, a constant
-  KnownDistanceError error;
-  double factor_width;  // of the depth factor in CalibrationOrigin
+  TangentJacobian<1, PoseBlock> by_a, by_b;
+  TangentJacobian<1, CalibrationBlock> by_y;
 };
 
 std::vector<DistanceEquation> DistanceEquations(const CalibrationViews& views,
                                                 const CalibrationOrigin& origin,
                                                 const CalibrationState& state) {
-  const std::vector<MotionDerivatives> poses = PosesOf(state);
+  const auto model = std::make_shared<CalibrationModel>(
+      CalibrationModel{views.camera, origin});
+  const CalibrationVector y = origin.NumbersOf(state.theta);
   std::vector<DistanceEquation> equations;
   for (const KnownDistance& known : views.distances) {
-    equations.push_back({ReducedCameraSystem::PlaceOfPose(known.a),
-                         ReducedCameraSystem::PlaceOfPose(known.b),
-                         KnownDistanceError(poses[known.a], poses[known.b],
-                                            state.theta[kDepthFactor], known),
-                         origin.width[kDepthFactor]});
+    DistanceEquation equation;
+    equation.place_a = ReducedCameraSystem::PlaceOfPose(known.a);
+    equation.place_b = ReducedCameraSystem::PlaceOfPose(known.b);
+    double r;
+    ScaledDistanceFactor{model, known}.Jacobian(
+        PoseFrom(state.world_from_cam[known.a]),
+        PoseFrom(state.world_from_cam[known.b]), y, &r, &equation.by_a,
+        &equation.by_b, &equation.by_y);
+    equations.push_back(equation);
   }
   return equations;
 }
@@ -148,11 +161,11 @@ Eigen::MatrixXd KnownBefore(const ReducedCameraSystem& equations,
   const Eigen::Index size = equations.hessian.rows();
   const int y_at = equations.PlaceOfY();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
-  for (const auto& [place_a, place_b, error, factor_width] : distances) {
+  for (const auto& [place_a, place_b, by_a, by_b, by_y] : distances) {
     Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
-    if (place_a >= 0) row.segment<6>(place_a) += error.a.transpose();
-    if (place_b >= 0) row.segment<6>(place_b) += error.b.transpose();
-    row[y_at + kDepthFactor] += error.by_factor * factor_width;
+    if (place_a >= 0) row.segment<6>(place_a) += by_a.transpose();
+    if (place_b >= 0) row.segment<6>(place_b) += by_b.transpose();
+    row.segment<kCalibrationSize>(y_at) += by_y.transpose();
     information.noalias() += row * row.transpose();
   }
   information.diagonal().tail<kCalibrationSize>().array() += 1.0;
@@ -183,14 +196,13 @@ CalibrationMatrix StatedScatter(const std::vector<DistanceEquation>& distances,
                                 const Eigen::MatrixXd& inverse) {
   const auto of_y = inverse.bottomRows<kCalibrationSize>();
   CalibrationMatrix scatter = of_y.transpose() * of_y;
-  for (const auto& [place_a, place_b, error, factor_width] : distances) {
-    CalibrationVector move =
-        of_y.row(kDepthFactor).transpose() * error.by_factor * factor_width;
+  for (const auto& [place_a, place_b, by_a, by_b, by_y] : distances) {
+    CalibrationVector move = of_y.transpose() * by_y.transpose();
     if (place_a >= 0) {
-      move += inverse.middleRows<6>(place_a).transpose() * error.a.transpose();
+      move += inverse.middleRows<6>(place_a).transpose() * by_a.transpose();
     }
     if (place_b >= 0) {
-      move += inverse.middleRows<6>(place_b).transpose() * error.b.transpose();
+      move += inverse.middleRows<6>(place_b).transpose() * by_b.transpose();
     }
     scatter += move * move.transpose();
   }
@@ -203,41 +215,50 @@ ReducedCameraSystem MakeReducedCameraSystem(const CalibrationViews& views,
                                             bool training_only,
                                             const CalibrationOrigin& origin,
                                             const CalibrationState& state) {
-  const std::vector<MotionDerivatives> poses = PosesOf(state);
+  const auto model = std::make_shared<CalibrationModel>(
+      CalibrationModel{views.camera, origin});
+  const std::vector<PoseOf<double>> poses = PosesOf(state);
+  const CalibrationVector y = origin.NumbersOf(state.theta);
   const int num_poses = static_cast<int>(poses.size());
   const int size = 6 * (num_poses - 1) + kCalibrationSize;
   ReducedCameraSystem equations;
   equations.hessian = Eigen::MatrixXd::Zero(size, size);
   equations.gradients = Eigen::MatrixXd::Zero(size, num_poses);
-  OneLandmark one(origin, &equations);
-  Eigen::Matrix<double, 1, 1> r1;
-  Eigen::Vector2d r2;
-  LandmarkDerivatives<1> J1;
-  LandmarkDerivatives<2> J2;
+  OneLandmark one(&equations);
+  // Adds the residual of a view.
+  const auto add = [&](const auto& factor, const Landmark& landmark,
+                       int keyframe, const Eigen::Matrix<double, 1, 1>& d) {
+    constexpr int kRows = std::decay_t<decltype(factor)>::kRows;
+    Eigen::Matrix<double, kRows, 1> r;
+    TangentJacobian<kRows, PoseBlock> by_anchor, by_view;
+    TangentJacobian<kRows, InverseDepthBlock> by_depth;
+    TangentJacobian<kRows, CalibrationBlock> by_y;
+    factor.Jacobian(poses[landmark.anchor], poses[keyframe], d, y, r.data(),
+                    &by_anchor, &by_view, &by_depth, &by_y);
+    one.Add<kRows>(r, by_anchor, by_view, by_depth, by_y);
+  };
   for (size_t i = 0; i < views.landmarks.size(); ++i) {
     const Landmark& landmark = views.landmarks[i];
-    const double d = state.inverse_depths[i];
-    const MotionDerivatives& anchor = poses[landmark.anchor];
+    const Eigen::Matrix<double, 1, 1> d(state.inverse_depths[i]);
     one.Begin(landmark);
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views.views[landmark.first_view + k];
       if (!view.TakesPart(training_only)) continue;
       const LandmarkData data = DataOf(views, landmark, view, state);
-      const MotionDerivatives& there = poses[view.keyframe];
       one.BeginView(view.keyframe);
-      LandmarkPixel::Jacobian(anchor, there, d, state.theta.data(), data,
-                              r2.data(), &J2);
-      one.Add(J2, r2);
+      add(LandmarkPixelFactor{model, data}, landmark, view.keyframe, d);
       if (data.depth.inverse_sigma > 0.0) {
-        LandmarkDepth::Jacobian(anchor, there, d, state.theta.data(), data,
-                                r1.data(), &J1);
-        one.Add(J1, r1);
+        add(LandmarkDepthFactor{model, data}, landmark, view.keyframe, d);
       }
     }
     if (one.num_views() == 0) continue;
-    AnchorDepth::Jacobian(anchor, anchor, d, state.theta.data(),
-                          DataOf(views, landmark, state), r1.data(), &J1);
-    one.Add(J1, r1);  // depends on no pose, whichever view it is added to
+    const auto no_pose = TangentJacobian<1, PoseBlock>::Zero().eval();
+    Eigen::Matrix<double, 1, 1> r, by_depth;
+    TangentJacobian<1, CalibrationBlock> by_y;
+    AnchorDepthFactor{model, DataOf(views, landmark, state)}.Jacobian(
+        d, y, r.data(), &by_depth, &by_y);
+    // It depends on no pose, whichever view it is added to.
+    one.Add<1>(r, no_pose, no_pose, by_depth, by_y);
     one.MoveToEquations();
   }
   return equations;

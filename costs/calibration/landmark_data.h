@@ -2,11 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "core/geometry/camera.h"
 #include "core/geometry/twist.h"
 
-// What is measured of a landmark; landmark_residuals.h compares it with the
-// model.
+// What is measured of a landmark; landmark_model.h predicts it.
 
 namespace rgbd_pose {
 
@@ -38,7 +36,6 @@ struct RowMotion {
 
 // The measurements of a landmark at its anchor and in one view.
 struct LandmarkData {
-  const Camera* rest = nullptr;           // of the lens, see CalibratedLens
   double anchor_u = 0.0, anchor_v = 0.0;  // px, as seen (distorted)
   RowMotion anchor_motion;                // of that pixel
   double u = 0.0, v = 0.0;                // px, in the view

@@ -97,4 +97,20 @@ inline Eigen::Vector2d Undistorted(const CalibratedLens<double>& lens, double u,
   return place;
 }
 
+// The same for a ceres::Jet: one more step of Newton's method from the place
+// found has the exact derivatives.
+template <typename Jet>
+Eigen::Matrix<Jet, 2, 1> Undistorted(const CalibratedLens<Jet>& lens, double u,
+                                     double v) {
+  CalibrationVector values;
+  for (int k = 0; k < kCalibrationSize; ++k) values[k] = lens.theta[k].a;
+  const CalibratedLens<double> plain(values.data(), lens.rest);
+  const Eigen::Vector2d place = Undistorted(plain, u, v);
+  const Eigen::Matrix<Jet, 2, 1> off =
+      lens.FromPixel(u, v) - lens.Distort(Jet(place[0]), Jet(place[1]));
+  const Eigen::Matrix2d step =
+      DistortDerivative(plain, place[0], place[1]).inverse();
+  return place.cast<Jet>() + step.cast<Jet>() * off;
+}
+
 }  // namespace rgbd_pose

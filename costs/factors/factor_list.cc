@@ -1,12 +1,14 @@
 #include "costs/factors/factor_list.h"
 
 #include "core/factors/common_direction.h"
+#include "core/factors/distance.h"
 #include "core/factors/relative_pose.h"
 #include "core/util/type_list.h"
+#include "costs/calibration/landmark_factors.h"
+#include "costs/calibration/scaled_distance.h"
 #include "costs/factors/absolute_pose.h"
 #include "costs/factors/absolute_position.h"
 #include "costs/factors/constant_velocity.h"
-#include "costs/factors/distance.h"
 #include "costs/factors/gravity.h"
 #include "costs/factors/gyroscope.h"
 #include "costs/factors/inertial.h"
@@ -21,7 +23,9 @@ using FactorTypes =
     TypeList<AbsolutePoseFactor, AbsolutePositionFactor, RelativePoseFactor,
              RelativeRotationFactor, GravityFactor, CommonDirectionFactor,
              ConstantVelocityFactor, DistanceFactor, MapPlaneFactor,
-             LandmarkFactor, GyroscopeFactor, InertialFactor>;
+             LandmarkFactor, LandmarkPixelFactor, LandmarkDepthFactor,
+             AnchorDepthFactor, ScaledDistanceFactor, GyroscopeFactor,
+             InertialFactor>;
 
 template <typename... Factors>
 std::vector<ListedFactor> ListOf(TypeList<Factors...> /*types*/) {

@@ -21,8 +21,8 @@ namespace rgbd_pose {
 // are no exception. Without a landmark in front of the view there is no
 // residual: it returns false.
 //
-// The camera is constant; rgbd_calibrate has the residual that estimates it
-// (costs/calibration/landmark_residuals.h).
+// The camera is constant; LandmarkPixelFactor estimates it
+// (costs/calibration/landmark_factors.h).
 struct LandmarkFactor {
   static constexpr char kName[] = "landmark";
   using Blocks = BlockList<PoseBlock, PoseBlock, InverseDepthBlock>;

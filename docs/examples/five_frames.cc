@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "rgbd_pose/core/factors/distance.h"
 #include "rgbd_pose/core/factors/factor.h"
 #include "rgbd_pose/core/factors/pose_manifold.h"
 #include "rgbd_pose/costs/cost_factory.h"
-#include "rgbd_pose/costs/factors/distance.h"
 #include "rgbd_pose/costs/factors/gravity.h"
 #include "rgbd_pose/costs/factors/pair.h"
 #include "rgbd_pose/frontend/simulation/synthetic_matches.h"

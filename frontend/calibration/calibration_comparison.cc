@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "core/geometry/motion.h"
-#include "costs/calibration/landmark_block.h"
+#include "core/factors/blocks.h"
+#include "costs/calibration/landmark_factors.h"
 #include "frontend/calibration/calibration_halves.h"
 
 namespace rgbd_pose {
@@ -16,22 +17,24 @@ namespace {
 // Returns the robust cost of a view of the i-th landmark and its error (px).
 double CostOf(const CalibrationViews& views, const LandmarkView& view,
               bool with_depth, const CalibrationState& state,
-              const std::vector<MotionDerivatives>& poses, size_t i,
+              const std::vector<PoseOf<double>>& poses, size_t i,
               const CalibrationState& scales, Eigen::Vector2d* error) {
   const Landmark& landmark = views.landmarks[i];
-  const double d = state.inverse_depths[i];
+  const Eigen::Matrix<double, 1, 1> d(state.inverse_depths[i]);
+  const auto model =
+      std::make_shared<CalibrationModel>(CalibrationModel{views.camera, {}});
   const LandmarkData data = DataOf(views, landmark, view, scales);
-  const MotionDerivatives& anchor = poses[landmark.anchor];
-  const MotionDerivatives& there = poses[view.keyframe];
+  const PoseOf<double>& anchor = poses[landmark.anchor];
+  const PoseOf<double>& there = poses[view.keyframe];
   const double square = kLandmarkLossWidth * kLandmarkLossWidth;
-  LandmarkPixel::Residual<double>(anchor, there, d, state.theta.data(), data,
-                                  error->data());
+  LandmarkPixelFactor{model, data}.Residual(anchor, there, d, state.theta,
+                                            error->data());
   double cost = square * std::log1p(error->squaredNorm() / square);
   *error /= data.inverse_sigma_px;
   if (with_depth) {
     double r;
-    LandmarkDepth::Residual<double>(anchor, there, d, state.theta.data(), data,
-                                    &r);
+    LandmarkDepthFactor{model, data}.Residual(anchor, there, d, state.theta,
+                                              &r);
     cost += square * std::log1p(r * r / square);
   }
   return 0.5 * cost;
@@ -40,14 +43,14 @@ double CostOf(const CalibrationViews& views, const LandmarkView& view,
 // The motion (px/s) in the image of the i-th landmark in a view.
 Eigen::Vector2d FlowOf(const CalibrationViews& views, const LandmarkView& view,
                        const CalibrationState& state,
-                       const std::vector<MotionDerivatives>& poses, size_t i) {
+                       const std::vector<PoseOf<double>>& poses, size_t i) {
   const Landmark& landmark = views.landmarks[i];
   const double d = state.inverse_depths[i];
   const double* const theta = state.theta.data();
-  const Eigen::Vector3d X =
-      InView<double>(poses[landmark.anchor], poses[view.keyframe], d, theta,
-                     DataOf(views, landmark, view, state)) /
-      d;
+  const Eigen::Vector3d X = InView(CalibratedLens<double>(theta, views.camera),
+                                   poses[landmark.anchor], poses[view.keyframe],
+                                   d, DataOf(views, landmark, view, state)) /
+                            d;
   Eigen::Vector3d v;
   views.twists[view.keyframe].PointVelocity(X.data(), v.data());
   return {theta[kFx] * (v.x() - X.x() / X.z() * v.z()) / X.z(),

@@ -1,10 +1,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "core/geometry/motion.h"
+#include "core/factors/blocks.h"
 #include "core/util/quantile.h"
-#include "costs/calibration/landmark_residuals.h"
+#include "costs/calibration/landmark_factors.h"
 #include "frontend/calibration/calibration_result.h"
 
 namespace rgbd_pose {
@@ -20,12 +21,15 @@ struct Sample {
 
 // Appends the depths of the i-th landmark in its anchor and in all views.
 void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
-                   const std::vector<MotionDerivatives>& poses, size_t i,
+                   const std::vector<PoseOf<double>>& poses, size_t i,
                    std::vector<Sample>* samples) {
   const Landmark& landmark = views.landmarks[i];
-  const MotionDerivatives& anchor = poses[landmark.anchor];
-  const double d = state.inverse_depths[i];
-  const double* const theta = state.theta.data();
+  const PoseOf<double>& anchor = poses[landmark.anchor];
+  const Eigen::Matrix<double, 1, 1> d(state.inverse_depths[i]);
+  const CalibrationVector& theta = state.theta;
+  const auto model =
+      std::make_shared<CalibrationModel>(CalibrationModel{views.camera, {}});
+  const CalibratedLens<double> lens(theta.data(), views.camera);
   const size_t first = samples->size();
   double information = 0.0;
   const auto add = [&](const LandmarkData& data, double w,
@@ -33,7 +37,7 @@ void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
     const MeasuredInverseDepth& depth = data.depth;
     information += by_depth;
     if (depth.pixel_value == 0.0) return;
-    const double expected = MeasuredFrom<double>(w, theta, data);
+    const double expected = MeasuredFrom(w, theta.data(), data);
     // The depth is moved along the plane to the position of the landmark.
     const double there = depth.plane.dot(ray);
     const double pixel =
@@ -47,26 +51,32 @@ void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
     }
   };
   double r[2];
-  LandmarkDerivatives<1> J1;
-  LandmarkDerivatives<2> J2;
+  Eigen::Matrix<double, 1, 1> by_depth;
+  TangentJacobian<1, PoseBlock> by_anchor, by_view;
+  TangentJacobian<1, CalibrationBlock> by_theta;
   const LandmarkData own = DataOf(views, landmark, state);
-  AnchorDepth::Jacobian(anchor, anchor, d, theta, own, r, &J1);
-  add(own, d, landmark.depth.ray, J1.inverse_depth.squaredNorm());
+  AnchorDepthFactor{model, own}.Jacobian(d, theta, r, &by_depth, &by_theta);
+  add(own, d[0], landmark.depth.ray, by_depth.squaredNorm());
   for (int k = 0; k < landmark.num_views; ++k) {
     const LandmarkView& view = views.views[landmark.first_view + k];
     const LandmarkData data = DataOf(views, landmark, view, state);
-    const MotionDerivatives& there = poses[view.keyframe];
-    LandmarkPixel::Jacobian(anchor, there, d, theta, data, r, &J2);
-    information += J2.inverse_depth.squaredNorm();
+    const PoseOf<double>& there = poses[view.keyframe];
+    Eigen::Vector2d by_depth_px;
+    TangentJacobian<2, PoseBlock> by_anchor_px, by_view_px;
+    TangentJacobian<2, CalibrationBlock> by_theta_px;
+    LandmarkPixelFactor{model, data}.Jacobian(anchor, there, d, theta, r,
+                                              &by_anchor_px, &by_view_px,
+                                              &by_depth_px, &by_theta_px);
+    information += by_depth_px.squaredNorm();
     if (view.depth.inverse_sigma == 0.0) continue;
     // Offset from the position of the feature to that of the landmark.
     const Eigen::Vector3d beside(r[0] / data.inverse_sigma_px / theta[kFx],
                                  r[1] / data.inverse_sigma_px / theta[kFy],
                                  0.0);
-    LandmarkDepth::Jacobian(anchor, there, d, theta, data, r, &J1);
-    const Eigen::Vector3d Y = InView<double>(anchor, there, d, theta, data);
-    add(data, d / Y.z(), view.depth.ray + beside,
-        J1.inverse_depth.squaredNorm());
+    LandmarkDepthFactor{model, data}.Jacobian(
+        anchor, there, d, theta, r, &by_anchor, &by_view, &by_depth, &by_theta);
+    const Eigen::Vector3d Y = InView(lens, anchor, there, d[0], data);
+    add(data, d[0] / Y.z(), view.depth.ray + beside, by_depth.squaredNorm());
   }
   for (size_t s = first; s < samples->size(); ++s) {
     (*samples)[s].share /= information;
@@ -131,7 +141,7 @@ void FitSigmas(double relative_error, DepthNoiseFit* fit) {
 std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
                                            const CalibrationState& state,
                                            const DepthNoiseModel& old) {
-  const std::vector<MotionDerivatives> poses = PosesOf(state);
+  const std::vector<PoseOf<double>> poses = PosesOf(state);
   std::vector<Sample> samples;
   for (size_t i = 0; i < views.landmarks.size(); ++i) {
     CollectDepths(views, state, poses, i, &samples);

@@ -75,6 +75,7 @@ bool Connect(const Distance& distance, double sigma, double share,
   const int n = static_cast<int>(data->timestamps.size());
   for (int i = 0; i < n; ++i) {
     KnownDistance farthest;
+    farthest.metres = 0.0;
     for (int k = i + 1; k < n && farthest.metres < kFarApart; ++k) {
       const double metres = distance(data->timestamps[i], data->timestamps[k]);
       if (metres <= farthest.metres) continue;

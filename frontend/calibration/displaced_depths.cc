@@ -6,7 +6,7 @@
 
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
-#include "costs/calibration/landmark_residuals.h"
+#include "costs/calibration/landmark_model.h"
 #include "frontend/calibration/calibration_data.h"
 #include "frontend/frame/depth_warper.h"
 #include "frontend/frame/observe.h"

@@ -15,7 +15,7 @@ missing() {
 
 mutants=$(scripts/mutants --list)
 direct=$(sed -n 's/^#include "\(costs\/direct\/.*\)"/\1/p' costs/cost_list.h)
-factors=$(sed -n 's/^#include "\(.*factors\/.*\)"/\1/p' costs/factors/factor_list.cc |
+factors=$(sed -n 's/^#include "\(.*\/\(factors\|calibration\)\/.*\)"/\1/p' costs/factors/factor_list.cc |
   grep -v factor_list.h)
 for file in costs/matches/*.h $direct $factors robust/losses.h; do
   grep -qF "$file:" <<<"$mutants" || missing "no mutant of $file"

@@ -6,11 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include "core/util/quantile.h"
-#include "costs/calibration/landmark_residuals.h"
+#include "costs/calibration/landmark_factors.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {
@@ -66,6 +67,8 @@ struct World {
 
   // Measurements are set from the residuals of measurements of zero.
   void SeeExactly() {
+    const auto model =
+        std::make_shared<CalibrationModel>(CalibrationModel{views.camera, {}});
     const auto poses = PosesOf(truth);
     double r[2];
     for (size_t i = 0; i < views.landmarks.size(); ++i) {
@@ -73,15 +76,15 @@ struct World {
       for (int k = 0; k < landmark.num_views; ++k) {
         LandmarkView& view = views.views[landmark.first_view + k];
         const LandmarkData data = DataOf(views, landmark, view, truth);
-        const RotationAndCenter<double>&anchor = poses[landmark.anchor],
+        const PoseOf<double>&anchor = poses[landmark.anchor],
               &there = poses[view.keyframe];
-        const double d = truth.inverse_depths[i];
-        LandmarkPixel::Residual<double>(anchor, there, d, truth.theta.data(),
-                                        data, r);
+        const Eigen::Matrix<double, 1, 1> d(truth.inverse_depths[i]);
+        LandmarkPixelFactor{model, data}.Residual(anchor, there, d, truth.theta,
+                                                  r);
         view.u = std::abs(r[0]) * kSigmaPx;
         view.v = std::abs(r[1]) * kSigmaPx;
-        LandmarkDepth::Residual<double>(anchor, there, d, truth.theta.data(),
-                                        data, r);
+        LandmarkDepthFactor{model, data}.Residual(anchor, there, d, truth.theta,
+                                                  r);
         view.depth.value = std::abs(r[0]) / kInverseSigmaDepth;
       }
     }

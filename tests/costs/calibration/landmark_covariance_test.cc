@@ -7,14 +7,16 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/factors/check_factor.h"
+#include "core/factors/factor.h"
 #include "costs/calibration/bundle_adjustment.h"
-#include "costs/calibration/landmark_block.h"
-#include "costs/calibration/landmark_residuals.h"
+#include "costs/calibration/landmark_factors.h"
+#include "costs/calibration/scaled_distance.h"
 #include "frontend/simulation/synthetic_matches.h"
-#include "tests/support/landmark_oracle.h"
 
 namespace rgbd_pose {
 namespace {
@@ -38,6 +40,11 @@ struct Problem {
   CalibrationViews views;
   CalibrationState state;
   CalibrationOrigin origin;
+
+  std::shared_ptr<const CalibrationModel> Model() const {
+    return std::make_shared<CalibrationModel>(
+        CalibrationModel{views.camera, origin});
+  }
 
   // Each keyframe is the anchor of some landmarks, or `anchor` is of all.
   explicit Problem(std::optional<int> anchor = std::nullopt) {
@@ -78,52 +85,78 @@ struct Problem {
   }
 };
 
+// The derivatives of a factor in the tangents of its blocks by ceres::Jet, one
+// above another: a row for each direction.
+template <typename Factor>
+Eigen::MatrixXd TangentsByJets(const Factor& factor,
+                               const std::vector<const double*>& x, double* r) {
+  const std::unique_ptr<ceres::CostFunction> jets(MakeAutodiffFactor(factor));
+  const auto kinds = factors::KindsOf(typename Factor::Blocks());
+  std::vector<std::vector<double>> by;
+  std::vector<double*> pointers;
+  int directions = 0;
+  for (const factors::BlockKind& kind : kinds) {
+    by.emplace_back(kind.size * Factor::kRows);
+    directions += kind.tangent;
+  }
+  for (std::vector<double>& block : by) pointers.push_back(block.data());
+  EXPECT_TRUE(jets->Evaluate(x.data(), r, pointers.data()));
+  Eigen::MatrixXd all(directions, Factor::kRows);
+  int at = 0;
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    const Eigen::Map<const Eigen::MatrixXd> transposed(
+        by[i].data(), kinds[i].size, Factor::kRows);
+    all.middleRows(at, kinds[i].tangent) =
+        kinds[i].plus_jacobian(x[i]).transpose() * transposed;
+    at += kinds[i].tangent;
+  }
+  return all;
+}
+
 // All unknowns: poses except the first, y, and the depths.
 class DenseEquations {
  public:
-  explicit DenseEquations(const Problem& problem) : problem_(problem) {
+  explicit DenseEquations(const Problem& problem)
+      : problem_(problem), model_(problem.Model()) {
     for (const Rigid3d& pose : problem.state.world_from_cam) {
-      origins_.emplace_back(pose.Inverse());
+      poses_.push_back(PoseVectorOf(pose));
     }
     kept_ = 6 * (kKeyframes - 1) + kCalibrationSize;
     H = Eigen::MatrixXd::Zero(kept_ + kLandmarks, kept_ + kLandmarks);
     g = Eigen::MatrixXd::Zero(kept_ + kLandmarks, kKeyframes);
   }
 
-  template <typename Residual>
+  // A residual of a view.
+  template <typename Factor>
   void Add(int landmark, int anchor, int keyframe, const LandmarkData& data) {
-    constexpr int kRows = Residual::kRows;
-    const MotionVector zero = MotionVector::Zero();
-    const CalibrationVector y = CalibrationVector::Zero();
-    const double* x[] = {zero.data(), zero.data(),
-                         &problem_.state.inverse_depths[landmark], y.data()};
-    Eigen::Matrix<double, kRows, 1> r;
-    Eigen::Matrix<double, kRows, 6, Eigen::RowMajor> by_anchor, by_view;
-    Eigen::Matrix<double, kRows, 1> by_depth;
-    Eigen::Matrix<double, kRows, kCalibrationSize, Eigen::RowMajor> by_y;
-    double* jacobians[] = {by_anchor.data(), by_view.data(), by_depth.data(),
-                           by_y.data()};
-    const LandmarkOracleBlock<Residual> oracle(new LandmarkOracle<Residual>(
-        origins_[anchor], origins_[keyframe], problem_.origin, data));
-    ASSERT_TRUE(oracle.Evaluate(x, r.data(), jacobians));
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(kRows, H.cols());
-    if (anchor > 0) J.middleCols<6>(6 * (anchor - 1)) += by_anchor;
-    if (keyframe > 0) J.middleCols<6>(6 * (keyframe - 1)) += by_view;
-    J.middleCols<kCalibrationSize>(kept_ - kCalibrationSize) = by_y;
-    J.col(kept_ + landmark) = by_depth;
-    const double weight =
-        1.0 / (1.0 + r.squaredNorm() / (kLossWidth * kLossWidth));
-    // Derivative of the loss's influence along the residual, by differences.
-    const auto pull = [](double s) {
-      return std::sqrt(s) / (1.0 + s / (kLossWidth * kLossWidth));
-    };
-    const double norm = r.norm(), step = 1e-5;
-    slope_p += (kRows - 1) * weight + (pull(std::pow(norm + step, 2)) -
-                                       pull(std::pow(norm - step, 2))) /
-                                          (2.0 * step);
-    weight_p += kRows * weight;
-    H += weight * J.transpose() * J;
-    g.col(anchor) += weight * J.transpose() * r;
+    Eigen::Matrix<double, Factor::kRows, 1> r;
+    const Eigen::MatrixXd by =
+        TangentsByJets(Factor{model_, data},
+                       {poses_[anchor].data(), poses_[keyframe].data(),
+                        &problem_.state.inverse_depths[landmark], y_.data()},
+                       r.data());
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(H.cols(), Factor::kRows);
+    if (anchor > 0) J.middleRows<6>(6 * (anchor - 1)) += by.topRows<6>();
+    if (keyframe > 0) {
+      J.middleRows<6>(6 * (keyframe - 1)) += by.middleRows<6>(6);
+    }
+    J.row(kept_ + landmark) = by.row(12);
+    J.middleRows<kCalibrationSize>(kept_ - kCalibrationSize) =
+        by.bottomRows<kCalibrationSize>();
+    AddRows<Factor::kRows>(anchor, J.transpose(), r);
+  }
+
+  // The residual of an anchor.
+  void AddAnchor(int landmark, int anchor, const LandmarkData& data) {
+    Eigen::Matrix<double, 1, 1> r;
+    const Eigen::MatrixXd by = TangentsByJets(
+        AnchorDepthFactor{model_, data},
+        {&problem_.state.inverse_depths[landmark], y_.data()}, r.data());
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(H.cols(), 1);
+    J.row(kept_ + landmark) = by.row(0);
+    J.middleRows<kCalibrationSize>(kept_ - kCalibrationSize) =
+        by.bottomRows<kCalibrationSize>();
+    AddRows<1>(anchor, J.transpose(), r);
   }
 
   // Depths without residuals are left out.
@@ -146,8 +179,28 @@ class DenseEquations {
   double slope_p = 0.0, weight_p = 0.0;
 
  private:
+  template <int kRows>
+  void AddRows(int anchor, const Eigen::MatrixXd& J,
+               const Eigen::Matrix<double, kRows, 1>& r) {
+    const double weight =
+        1.0 / (1.0 + r.squaredNorm() / (kLossWidth * kLossWidth));
+    // Derivative of the loss's influence along the residual, by differences.
+    const auto pull = [](double s) {
+      return std::sqrt(s) / (1.0 + s / (kLossWidth * kLossWidth));
+    };
+    const double norm = r.norm(), step = 1e-5;
+    slope_p += (kRows - 1) * weight + (pull(std::pow(norm + step, 2)) -
+                                       pull(std::pow(norm - step, 2))) /
+                                          (2.0 * step);
+    weight_p += kRows * weight;
+    H += weight * J.transpose() * J;
+    g.col(anchor) += weight * J.transpose() * r;
+  }
+
   const Problem& problem_;
-  std::vector<LinearizationPoint> origins_;
+  const std::shared_ptr<const CalibrationModel> model_;
+  const CalibrationVector y_ = CalibrationVector::Zero();
+  std::vector<PoseVector> poses_;
   int kept_ = 0;
 };
 
@@ -164,14 +217,15 @@ TEST(ReducedCameraSystemTest, AreThoseOfAllUnknownsWithoutTheDepths) {
         is_seen = true;
         const LandmarkData data =
             DataOf(problem.views, landmark, view, problem.state);
-        dense.Add<LandmarkPixel>(i, landmark.anchor, view.keyframe, data);
+        dense.Add<LandmarkPixelFactor>(i, landmark.anchor, view.keyframe, data);
         if (view.depth.inverse_sigma > 0.0) {
-          dense.Add<LandmarkDepth>(i, landmark.anchor, view.keyframe, data);
+          dense.Add<LandmarkDepthFactor>(i, landmark.anchor, view.keyframe,
+                                         data);
         }
       }
       if (!is_seen) continue;
-      dense.Add<AnchorDepth>(i, landmark.anchor, landmark.anchor,
-                             DataOf(problem.views, landmark, problem.state));
+      dense.AddAnchor(i, landmark.anchor,
+                      DataOf(problem.views, landmark, problem.state));
     }
     dense.EliminateDepths();
     const ReducedCameraSystem equations = MakeReducedCameraSystem(
@@ -211,21 +265,18 @@ void ExpectInverseAndSandwich(Problem problem, double correction) {
   Eigen::MatrixXd exact =
       Eigen::MatrixXd::Zero(equations.hessian.rows(), equations.hessian.cols());
   exact.bottomRightCorner<kCalibrationSize, kCalibrationSize>().setIdentity();
+  const CalibrationVector y = CalibrationVector::Zero();
   for (const KnownDistance& known : problem.views.distances) {
-    const LinearizationPoint a(problem.state.world_from_cam[known.a].Inverse());
-    const LinearizationPoint b(problem.state.world_from_cam[known.b].Inverse());
-    const MotionVector zero = MotionVector::Zero();
-    const CalibrationVector y = CalibrationVector::Zero();
-    const double* x[] = {zero.data(), zero.data(), y.data()};
-    Eigen::VectorXd by_a(6), by_b(6), by_y(static_cast<int>(kCalibrationSize));
-    double* jacobians[] = {by_a.data(), by_b.data(), by_y.data()};
+    const PoseVector a = PoseVectorOf(problem.state.world_from_cam[known.a]);
+    const PoseVector b = PoseVectorOf(problem.state.world_from_cam[known.b]);
     double residual;
-    KnownDistanceBlock(a, b, problem.origin, known)
-        .Evaluate(x, &residual, jacobians);
+    const Eigen::VectorXd by =
+        TangentsByJets(ScaledDistanceFactor{problem.Model(), known},
+                       {a.data(), b.data(), y.data()}, &residual);
     Eigen::VectorXd row = Eigen::VectorXd::Zero(exact.rows());
-    if (known.a > 0) row.segment<6>(6 * (known.a - 1)) += by_a;
-    if (known.b > 0) row.segment<6>(6 * (known.b - 1)) += by_b;
-    row.tail<kCalibrationSize>() += by_y;
+    if (known.a > 0) row.segment<6>(6 * (known.a - 1)) += by.head<6>();
+    if (known.b > 0) row.segment<6>(6 * (known.b - 1)) += by.segment<6>(6);
+    row.tail<kCalibrationSize>() += by.tail<kCalibrationSize>();
     exact += row * row.transpose();
   }
   const Eigen::MatrixXd H =

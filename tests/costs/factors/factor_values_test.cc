@@ -9,13 +9,13 @@
 #include <memory>
 
 #include "core/factors/common_direction.h"
+#include "core/factors/distance.h"
 #include "core/factors/factor.h"
 #include "core/factors/pose_manifold.h"
 #include "core/factors/relative_pose.h"
 #include "costs/factors/absolute_pose.h"
 #include "costs/factors/absolute_position.h"
 #include "costs/factors/constant_velocity.h"
-#include "costs/factors/distance.h"
 #include "costs/factors/gravity.h"
 #include "costs/factors/gyroscope.h"
 #include "costs/factors/inertial.h"
