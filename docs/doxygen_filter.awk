@@ -69,7 +69,7 @@ place && before ~ /^ *$/ {
   ended = before ~ /[;}] *$/
   if (!own && is_bare && is_trivial($0)) {
     print $0 " ///< &nbsp;"
-  } else if (!own && is_bare && FILENAME ~ /factors\// && is_described_elsewhere($0)) {
+  } else if (!own && is_bare && FILENAME ~ /(factors|calibration)\// && is_described_elsewhere($0)) {
     print "/// As every factor (core/factors/factor.h), or as Ceres has it."
     print
   } else if (own) {

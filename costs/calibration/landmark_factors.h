@@ -27,8 +27,8 @@ struct LandmarkPixelFactor {
       BlockList<PoseBlock, PoseBlock, InverseDepthBlock, CalibrationBlock>;
   static constexpr int kRows = 2;
 
-  std::shared_ptr<const CalibrationModel> model;
-  LandmarkData data;  // of the view
+  std::shared_ptr<const CalibrationModel> model;  // shared by a block's factors
+  LandmarkData data;                              // of the view
 
   template <typename T>
   bool Residual(const PoseOf<T>& anchor, const PoseOf<T>& view,
@@ -98,8 +98,8 @@ struct LandmarkDepthFactor {
       BlockList<PoseBlock, PoseBlock, InverseDepthBlock, CalibrationBlock>;
   static constexpr int kRows = 1;
 
-  std::shared_ptr<const CalibrationModel> model;
-  LandmarkData data;  // of the view
+  std::shared_ptr<const CalibrationModel> model;  // shared by a block's factors
+  LandmarkData data;                              // of the view
 
   template <typename T>
   bool Residual(const PoseOf<T>& anchor, const PoseOf<T>& view,
@@ -156,8 +156,8 @@ struct AnchorDepthFactor {
   using Blocks = BlockList<InverseDepthBlock, CalibrationBlock>;
   static constexpr int kRows = 1;
 
-  std::shared_ptr<const CalibrationModel> model;
-  LandmarkData data;  // of the anchor
+  std::shared_ptr<const CalibrationModel> model;  // shared by a block's factors
+  LandmarkData data;                              // of the anchor
 
   template <typename T>
   bool Residual(const Eigen::Matrix<T, 1, 1>& inverse_depth,

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/factors/blocks.h"
+#include "core/factors/distance.h"
 #include "core/factors/sampler.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/landmark_sample.h"
-#include "core/factors/distance.h"
 
 namespace rgbd_pose {
 
@@ -21,7 +21,7 @@ struct ScaledDistanceFactor {
   static constexpr int kRows = 1;
   using ByPose = TangentJacobian<kRows, PoseBlock>;
 
-  std::shared_ptr<const CalibrationModel> model;
+  std::shared_ptr<const CalibrationModel> model;  // shared by a block's factors
   DistanceFactor distance;  // with the positions as measured
 
   template <typename T>
