@@ -33,37 +33,24 @@ static void EachField(PickledBytes* bytes, Frame& f) {
 
 namespace {
 
-std::unique_ptr<Dataset> OpenTumDataset(const py::object& folder,
-                                        const RgbdCamera& camera,
-                                        const py::object& associations) {
-  SourceOptions options;
-  options.path = PathFrom(folder);
-  if (!associations.is_none()) {
-    options.associations_file = PathFrom(associations);
-  }
-  options.camera = camera;
-  return OpenTum(options);
-}
-
-// Python's index of a frame, which may count from the end, from 0.
-int IndexAmong(int frames, int index) {
-  const int from_start = index < 0 ? index + frames : index;
-  if (from_start >= 0 && from_start < frames) return from_start;
-  throw py::index_error(Format("frame %d: there are %d frames", index, frames));
-}
-
-Frame ReadFrame(const Dataset& dataset, int index) {
-  index = IndexAmong(dataset.size(), index);
-  const ReleasedGil no_gil;
-  return dataset.Read(index);
-}
-
 int LengthOf(const Recording& recording) {
   const size_t frames = recording.timestamps().size();
   if (frames > 0) return static_cast<int>(frames);
   throw py::type_error(
       "the number of frames of this recording is not known in advance; loop "
       "over it");
+}
+
+// `index` may count from the end.
+Frame FrameAt(Recording* recording, int index) {
+  const int frames = LengthOf(*recording);
+  const int from_start = index < 0 ? index + frames : index;
+  if (from_start < 0 || from_start >= frames) {
+    throw py::index_error(
+        Format("frame %d: there are %d frames", index, frames));
+  }
+  const ReleasedGil no_gil;
+  return recording->Read(from_start);
 }
 
 Recording OpenRecording(const py::object& path, const py::object& camera,
@@ -176,34 +163,6 @@ void BindFrame(py::module_* module) {
       .def(Pickled<Frame>());
 }
 
-void BindTumDataset(py::module_* module) {
-  py::class_<Dataset>(*module, "TumDataset", R"(
-A sequence in the layout of the TUM RGB-D benchmark, as a sequence of Frame.
-
-folder: with rgb.txt and depth.txt, which are paired by time.
-associations: file that pairs colour and depth images instead.
-
-Raises InputError (file:line) for unreadable input; images are read when they
-are accessed, with the GIL released.)")
-      .def(py::init(&OpenTumDataset), "Raises InputError for unreadable input.",
-           py::arg("folder"), py::arg("camera").none(false),
-           py::arg("associations") = py::none())
-      .def("__repr__",
-           [](const Dataset& self) {
-             return "TumDataset(" + std::to_string(self.size()) + " frames)";
-           })
-      .def("__len__", &Dataset::size)
-      .def("__getitem__", &ReadFrame, py::arg("index"))
-      .def("__iter__",
-           [](const py::object& self) {
-             return py::reinterpret_steal<py::iterator>(
-                 PySeqIter_New(self.ptr()));
-           })
-      .def_property_readonly(
-          "camera", [](const Dataset& self) { return self.camera(); },
-          "camera of all frames");
-}
-
 // A loop over a recording. Several threads may share it: Python's own iterator
 // of a function fails if two of them come to the end at once.
 struct FrameIterator {
@@ -272,14 +231,7 @@ recording does not specify. Raises InputError for unreadable input.)");
   recording.def("__len__", &LengthOf);
   // Not by the length, which may be unknown.
   recording.def("__bool__", [](const Recording&) { return true; });
-  recording.def(
-      "__getitem__",
-      [](Recording* self, int index) {
-        index = IndexAmong(LengthOf(*self), index);
-        const ReleasedGil no_gil;
-        return self->Read(index);
-      },
-      py::arg("index"));
+  recording.def("__getitem__", &FrameAt, py::arg("index"));
   const auto property = PropertiesOf(&recording);
   property(
       "camera", [](const Recording& self) { return self.source().camera(); },
@@ -315,7 +267,6 @@ recording does not specify. Raises InputError for unreadable input.)");
 
 void BindRecording(py::module_* module) {
   BindFrame(module);
-  BindTumDataset(module);
   BindFrameIterator(module);
   BindAnyRecording(module);
 }

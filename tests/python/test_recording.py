@@ -29,15 +29,6 @@ def test_brings_its_camera_and_its_path(sequence, camera, whole):
         assert not array.flags.writeable
 
 
-def test_gives_the_frames_of_a_tum_folder(sequence, camera, whole):
-    dataset = rgbd_pose.TumDataset(sequence, camera)
-    assert len(whole) == len(dataset)
-    for frame, expected in zip(whole, dataset):
-        assert frame.index == expected.index
-        np.testing.assert_array_equal(frame.gray, expected.gray)
-        np.testing.assert_array_equal(frame.depth, expected.depth)
-
-
 def test_each_loop_reads_it_anew(sequence):
     recording = rgbd_pose.Recording(sequence, frames="1-3")
     first = [frame.timestamp for frame in recording]
@@ -64,7 +55,7 @@ def test_undoes_what_a_calibration_found(sequence, whole, tmp_path):
     camera = rgbd_pose.Camera.load(calibrated)
     for frame in (
         next(iter(rgbd_pose.Recording(sequence, calibrated))),
-        rgbd_pose.TumDataset(sequence, camera)[0],
+        rgbd_pose.Recording(sequence, camera)[0],
     ):
         np.testing.assert_allclose(frame.depth[seen], expected, atol=0.51)
 
@@ -108,6 +99,7 @@ def test_refuses_what_it_cannot_read(sequence, tmp_path):
         ("unknown source 'lidar'", sequence, {"source": "lidar"}),
         ("frames", sequence, {"frames": "all"}),
         ("none of them", sequence, {"frames": "9999-"}),
+        ("pairs.txt", sequence, {"associations": tmp_path / "pairs.txt"}),
         ("camera 'kinnect'", sequence, {"camera": "kinnect"}),
         ("depth_camera 'cam1': needs", sequence, {"depth_camera": "cam1"}),
     ]:
@@ -151,8 +143,6 @@ def test_says_what_it_is(sequence, camera):
     size = f"{camera.width} x {camera.height}"
     recording = rgbd_pose.Recording(sequence, frames="2-6:2")
     assert repr(recording) == f"Recording({str(sequence)!r}, 3 frames, {size})"
-    dataset = rgbd_pose.TumDataset(sequence, camera)
-    assert repr(dataset) == "TumDataset(8 frames)"
 
 
 def test_brings_its_inertial_samples(sequence, tmp_path):

@@ -27,7 +27,7 @@ def camera(sequence):
 
 @pytest.fixture(scope="module")
 def frames(sequence, camera):
-    return list(rgbd_pose.TumDataset(sequence, camera))
+    return list(rgbd_pose.Recording(sequence, camera))
 
 
 # The map's update for a keyframe is applied within these frames.

@@ -62,9 +62,9 @@ def test_estimate_motion_releases_it(counter):
 
 
 def test_reading_and_tracking_release_it(counter, sequence, camera):
-    dataset = rgbd_pose.TumDataset(sequence, camera)
-    assert advances(counter, lambda: dataset[0])
-    frame = dataset[0]
+    recording = rgbd_pose.Recording(sequence, camera)
+    assert advances(counter, lambda: recording[0])
+    frame = recording[0]
     odometry = rgbd_pose.Odometry(camera)
     assert advances(counter, lambda: odometry.track(frame.gray, frame.depth))
     slam = rgbd_pose.Slam(camera)
@@ -109,7 +109,7 @@ def test_many_threads_get_the_same(counter):
 
 
 def test_calls_of_one_odometry_wait_for_each_other(sequence, camera):
-    frame = rgbd_pose.TumDataset(sequence, camera)[0]
+    frame = rgbd_pose.Recording(sequence, camera)[0]
     odometry = rgbd_pose.Odometry(camera)
     frames = []
 

@@ -46,7 +46,6 @@ __all__ = [
     "SlamFrame",
     "SolverSummary",
     "TrackedFrame",
-    "TumDataset",
     "calibrate",
     "camera_presets",
     "costs",
