@@ -50,11 +50,13 @@ void RunFolder::WriteFile(const char* name, const std::string& content) const {
 
 void RunFolder::Publish() {
   try {
+    // A camera or a noise of depth that was found may be an input of this run.
     for (const char* name :
          {kLast, "report.html", "errors.csv", "trajectory.txt", "frames.csv",
           "edges.csv", "config.flags", "cloud_preview.json",
           "mesh_preview.json", "slam.csv", "keyframes.csv", "graph.g2o",
-          "trajectory_online.txt", "trajectory_odometry.txt"}) {
+          "trajectory_online.txt", "trajectory_odometry.txt",
+          "calibration.html", "residuals.csv"}) {
       fs::remove(path_ / name);
     }
     RemoveDebugImages(path_ / "debug");

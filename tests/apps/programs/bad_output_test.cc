@@ -210,11 +210,17 @@ TEST_F(BadInputTest, ResultsAreThoseOfOneRun) {
   EXPECT_TRUE(fs::exists(folder_ / "out/debug/000001.png"));
   folder_.Write("out/mine.txt", "mine");
   folder_.Write("out/slam.csv", "of rgbd_slam");
+  folder_.Write("out/calibration.html", "of rgbd_slam --calibrate");
+  folder_.Write("out/residuals.csv", "of rgbd_calibrate");
+  folder_.Write("out/camera.yaml", "may be the camera of this run");
   folder_.Write("out/debug/000001_mine.png", "mine");
   Spoiled().Remove("groundtruth.txt");
   ASSERT_EQ(RunCommand(call, folder_).exit_code, 0);
   EXPECT_FALSE(fs::exists(folder_ / "out/errors.csv"));
   EXPECT_FALSE(fs::exists(folder_ / "out/slam.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/calibration.html"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/residuals.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/camera.yaml"));
   EXPECT_FALSE(fs::exists(folder_ / "out/debug/000001.png"));
   EXPECT_TRUE(fs::exists(folder_ / "out/mine.txt"));
   EXPECT_TRUE(fs::exists(folder_ / "out/debug/000001_mine.png"));
