@@ -1,11 +1,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <system_error>
 
 #include "apps/export/export_format.h"
 #include "apps/export/run_states.h"
@@ -21,17 +22,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sets the settings of a table to the flags of a run, where it has them.
-void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
+// Sets the settings of a table to the flags of a run, where it has them. Throws
+// InputError, which names the file of the flags, for values that are none.
+void Apply(const nlohmann::json& flags, const std::string& file,
+           const std::vector<Setting>& table) {
   for (const Setting& setting : table) {
     const std::string text = SettingOf(flags, setting.name);
     if (text.empty()) continue;
+    const auto read = [&](auto* number) {
+      const char* const end = text.data() + text.size();
+      const auto [stop, error] = std::from_chars(text.data(), end, *number);
+      if (stop == end && error == std::errc()) return;
+      throw InputError(file + ": '" + text + "' is not a number for --" +
+                       setting.name);
+    };
     if (auto* named = std::get_if<NamedSetting>(&setting.value)) {
-      named->set(text);
+      Located(file, [&] { named->set(text); });
     } else if (int* const* whole = std::get_if<int*>(&setting.value)) {
-      **whole = std::atoi(text.c_str());
+      read(*whole);
     } else if (double* const* real = std::get_if<double*>(&setting.value)) {
-      **real = std::strtod(text.c_str(), nullptr);
+      read(*real);
     } else if (auto* const* words = std::get_if<std::string*>(&setting.value)) {
       **words = text;
     } else {
@@ -117,9 +127,10 @@ FinishedRun::FinishedRun(const std::string& run_folder,
                        "; give a results folder of rgbd_odometry or rgbd_slam");
     }
   }
-  const nlohmann::json flags = ReadReportSettings(path / "config.flags");
-  Apply(flags, SettingTable(&sequence));
-  Apply(flags, SettingTable(&odometry));
+  const std::string file = path / "config.flags";
+  const nlohmann::json flags = ReadReportSettings(file);
+  Apply(flags, file, SettingTable(&sequence));
+  Apply(flags, file, SettingTable(&odometry));
   if (!dataset.empty()) sequence.dataset = dataset;
   if (!camera.empty()) sequence.camera = camera;
 

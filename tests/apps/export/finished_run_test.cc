@@ -38,6 +38,17 @@ TEST(FinishedRunTest, ACloudHasTheDepthNoiseThatTrackingHad) {
   EXPECT_DOUBLE_EQ(NoiseOfCloudAt4M("--depth_noise=constant\n"), 0.005);
 }
 
+// A depth scale of 5 made a cloud without points.
+TEST(FinishedRunTest, SettingsThatAreNoneAreRefused) {
+  ExpectInputError([] { NoiseOfCloudAt4M("--depth_scale=5OOO\n"); },
+                   {"config.flags: '5OOO' is not a number for --depth_scale"});
+  ExpectInputError([] { NoiseOfCloudAt4M("--max_features=99999999999\n"); },
+                   {"'99999999999' is not a number for --max_features"});
+  ExpectInputError([] { NoiseOfCloudAt4M("--depth_noise=constnt\n"); },
+                   {"config.flags: unknown depth noise 'constnt'"});
+  NoiseOfCloudAt4M("--max_sigma_ok=inf\n--max_features=300\n");
+}
+
 // A camera that was found in one of two maps: its first frames were in a world
 // of their own, the second map is in another one.
 TEST(FinishedRunTest, FramesAreInTheSegmentThatTheirsHasJoined) {
