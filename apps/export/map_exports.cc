@@ -56,9 +56,9 @@ void ShowInPage(const std::string& folder, const char* file,
 }  // namespace
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
+  RequireCloudFile(options.output);
   const std::unique_ptr<FrameSource> source = OpenRecording(run);
   CloudFusion cloud(FusionOf<FusionOptions>(source->camera(), run, options));
-  RequireCloudFile(options.output);
   ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
     cloud.Add(frame, run.trajectory[view].world_from_cam);
   });
