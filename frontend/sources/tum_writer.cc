@@ -96,13 +96,21 @@ std::string WriteLists(const fs::path& folder, const StampPairs& pairs) {
          "--associations=FOLDER/associations.txt";
 }
 
+// Adds lines to a file, which is complete after each call. Throws InputError on
+// failure (disk full).
+void AddLines(const fs::path& path, const std::string& lines) {
+  std::ofstream file(path, std::ios::app);
+  if (file << lines << std::flush) return;
+  throw InputError(path.string() + ": writing failed " + LastFailure());
+}
+
 // Adds a frame to the lists of images: what a killed program leaves can be
 // read.
 void AddToLists(const fs::path& folder, double color,
                 std::optional<double> depth) {
-  std::ofstream(folder / kList, std::ios::app) << LineOf("rgb", color);
+  AddLines(folder / kList, LineOf("rgb", color));
   if (!depth.has_value()) return;
-  std::ofstream(folder / "depth.txt", std::ios::app) << LineOf("depth", *depth);
+  AddLines(folder / "depth.txt", LineOf("depth", *depth));
 }
 
 // Writes what is known of an inertial sensor, and the header of its samples.
@@ -155,8 +163,8 @@ WrittenSequence WriteFrames(FrameSource* source, const fs::path& folder,
     pairs->emplace_back(color, depth);
     AddToLists(folder, color, is_new ? std::optional(depth) : std::nullopt);
     if (!next->imu.empty()) {
-      std::ofstream(folder / kImuList, std::ios::app)
-          << FormatImuRows(next->imu, imu->has_gyro, /*has_header=*/false);
+      AddLines(folder / kImuList,
+               FormatImuRows(next->imu, imu->has_gyro, /*has_header=*/false));
       written.imu_samples += static_cast<int>(next->imu.size());
     }
     ++written.frames;

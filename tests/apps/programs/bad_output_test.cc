@@ -118,6 +118,17 @@ TEST_F(BadInputTest, FullDisks) {
               {"simulate", nullptr,
                WithFullDisk(40, RGBD_SIMULATE " --frames=2 --output={dir}/out"),
                2, ".png: writing failed (File too large)"},
+              {"inertial samples",
+               [](const Seq& s) {
+                 s.Write("../tiny.yaml",
+                         "Camera.fx: 65\nCamera.fy: 65\nCamera.cx: 40\n"
+                         "Camera.cy: 30\nCamera.width: 80\n"
+                         "Camera.height: 60\n");
+               },
+               WithFullDisk(60, RGBD_SIMULATE
+                            " --frames=4 --camera={dir}/tiny.yaml --imu "
+                            "--imu_rate=10000 --output={dir}/out"),
+               2, "imu.csv: writing failed (File too large)"},
               {"compare", nullptr, WithFullDisk(2, kSweep), 2,
                "writing failed (File too large)"},
               {"evaluate",
