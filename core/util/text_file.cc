@@ -34,7 +34,16 @@ void RefuseFolder(const std::string& path) {
   }
 }
 
+// Renaming would replace a device, such as /dev/null, by a file.
+void RefuseDevice(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_other(path, error)) {
+    throw InputError(path + ": is a device or a pipe, but a file is expected");
+  }
+}
+
 std::FILE* OpenToWrite(const std::string& path) {
+  RefuseDevice(path);
   std::FILE* file = std::fopen(TemporaryPath(path).c_str(), "wb");
   if (file == nullptr) {
     throw InputError(path + ": cannot be written " + LastFailure() +

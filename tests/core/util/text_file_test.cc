@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -128,6 +129,17 @@ TEST(TextFileTest, NamesTheFileItCannotWrite) {
                    {folder / "b.txt"});
   const std::filesystem::directory_iterator files(folder.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+// For root, nothing else would keep a file from taking the place of /dev/null.
+TEST(TextFileTest, LeavesDevicesAndPipesAlone) {
+  const TempFolder folder;
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  ExpectInputError([&] { WriteFileAtomically(pipe, "x"); },
+                   {pipe + ": is a device or a pipe, but a file is expected"});
+  ExpectInputError([&] { RequireWritable(pipe); }, {pipe + ": is a device"});
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(TextFileTest, TellsAheadWhatItCannotWrite) {
