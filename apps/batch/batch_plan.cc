@@ -18,6 +18,7 @@
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "frontend/sources/frame_range.h"
+#include "frontend/sources/masks.h"
 #include "frontend/tracking/tracker_factory.h"
 #include "robust/m_estimator.h"
 
@@ -80,15 +81,21 @@ int AddOwnLibrary(dl_phdr_info* library, size_t /*size*/, void* hash) {
   return 0;  // continue
 }
 
+void AddSize(const fs::path& file, TextHash* hash) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  hash->Add(error ? "none" : std::to_string(size));
+}
+
 // Accepts any lines; the run checks whether they are valid.
 void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
   AddFile(folder / list, hash);
   if (!IsFile(folder / list)) return;
   for (const TextLine& line : ReadTextTable(folder / list)) {
     if (line.words.size() < 2) continue;
-    std::error_code error;
-    const auto size = fs::file_size(folder / line.words[1], error);
-    hash->Add(error ? "none" : std::to_string(size));
+    const fs::path image = folder / line.words[1];
+    AddSize(image, hash);
+    AddSize(MaskPath(image.string()), hash);
   }
 }
 
@@ -105,8 +112,7 @@ void AddAllOf(const fs::path& recording, TextHash* hash) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     hash->Add(file.lexically_relative(recording).string());
-    const auto size = fs::file_size(file, error);
-    hash->Add(error ? "none" : std::to_string(size));
+    AddSize(file, hash);
     // The extensions of all files but images and bags.
     static const std::set<std::string> kTexts = {
         ".txt", ".json", ".log", ".csv", ".yaml", ".yml", ".freiburg"};
@@ -206,8 +212,11 @@ std::string HashSequence(const BatchSequence& sequence) {
   if (IsFile(fs::path(sequence.folder) / "rgb.txt")) {
     AddImagesOf(sequence.folder, "rgb.txt", &hash);
     AddImagesOf(sequence.folder, "depth.txt", &hash);
-    AddFile(fs::path(sequence.folder) / "groundtruth.txt", &hash);
-    AddFile(fs::path(sequence.folder) / "calibration.txt", &hash);
+    for (const char* file :
+         {"groundtruth.txt", "calibration.txt", "camera.yaml", "imu.yaml",
+          "imu.csv", "imu.txt", "accelerometer.txt"}) {
+      AddFile(fs::path(sequence.folder) / file, &hash);
+    }
   } else {
     AddAllOf(sequence.folder, &hash);
   }

@@ -74,8 +74,9 @@ std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
 BatchShard ParseShard(const std::string& text);
 
 // Hashes all input of a run on a sequence: rgb.txt, depth.txt, the name and
-// size of each image in them, groundtruth.txt and the camera. Missing files are
-// part of the hash; the location of the sequence is not.
+// size of each image in them and the size of its mask, groundtruth.txt, the
+// inertial samples and the camera. Missing files are part of the hash; the
+// location of the sequence is not.
 std::string HashSequence(const BatchSequence& sequence);
 
 // Hashes the program file and the project's shared libraries that this process

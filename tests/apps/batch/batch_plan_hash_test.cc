@@ -58,17 +58,29 @@ TEST_F(HashSequenceTest, SeesEveryInput) {
       {"s/camera.yaml", "fx: 501"},
       {"s/groundtruth.txt", ""},
       {"s/calibration.txt", "500 500 320 240"},
+      {"s/imu.csv", "1.0,0,0,0,0,0,9.8"},
+      {"s/imu.txt", "1.0,0,0,0,0,0,9.8"},
+      {"s/accelerometer.txt", "1.0 0 0 9.8"},
+      {"s/imu.yaml", "timeshift_cam_imu: 0"},
+      {"s/mask/1.png", "xxxx"},
   };
   for (const auto& change : kChanges) {
     const TempFolder& folder = folder_;
     folder.Write(change.file, change.text);
     EXPECT_NE(Hash(), before) << change.file;
+    std::filesystem::remove(folder / change.file);
     WriteSequence("s");
+    EXPECT_EQ(Hash(), before) << "all is as it was before " << change.file;
   }
-  std::filesystem::remove(folder_ / "s/groundtruth.txt");
-  EXPECT_NE(Hash(), before) << "the camera is still there";
-  std::filesystem::remove(folder_ / "s/calibration.txt");
-  EXPECT_EQ(Hash(), before) << "all is as it was";
+}
+
+// The mounting of an inertial sensor is also read where the list names another
+// camera.
+TEST_F(HashSequenceTest, SeesTheCameraFileBesideAPreset) {
+  const BatchSequence sequence = {"s", folder_ / "s", "tum_fr1"};
+  const std::string before = HashSequence(sequence);
+  folder_.Write("s/camera.yaml", "timeshift_cam_imu: 0.1");
+  EXPECT_NE(HashSequence(sequence), before);
 }
 
 TEST_F(HashSequenceTest, TakesBrokenSequences) {
