@@ -174,22 +174,41 @@ void SetDefaultOutput() {
   gflags::SetCommandLineOption("output", NewOutput(dataset).c_str());
 }
 
+// Prints the help or the version, if an argument asks for it. Returns whether
+// one does.
+bool PrintHelp(int argc, char** argv, const ProgramInfo& info) {
+  for (int i = 1; i < argc; ++i) {
+    if (const HelpFormat format = HelpFormatOf(argv[i])) {
+      std::fputs(format(HelpOf(info)).c_str(), stdout);
+      return true;
+    }
+    if (std::string(argv[i]) == "--version") {
+      std::printf("%s %s\n", info.name.c_str(), RGBD_POSE_VERSION);
+      return true;
+    }
+  }
+  return false;
+}
+
+// Throws InputError if what was printed cannot be written.
+void FinishOutput() {
+  const bool is_written = std::fflush(stdout) == 0;
+  if (is_written && std::ferror(stdout) == 0) return;
+  throw InputError("the standard output cannot be written (" +
+                   std::generic_category().message(is_written ? EIO : errno) +
+                   ")");
+}
+
 }  // namespace
 
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body) {
   const SettingFlags settings(info.settings);
-  for (int i = 1; i < argc; ++i) {
-    if (const HelpFormat format = HelpFormatOf(argv[i])) {
-      std::fputs(format(HelpOf(info)).c_str(), stdout);
-      return kExitOk;
-    }
-    if (std::string(argv[i]) == "--version") {
-      std::printf("%s %s\n", info.name.c_str(), RGBD_POSE_VERSION);
-      return kExitOk;
-    }
-  }
   try {
+    if (PrintHelp(argc, argv, info)) {
+      FinishOutput();
+      return kExitOk;
+    }
     ReadFlags(Words(argc, argv));
     if (info.has_default_output) SetDefaultOutput();
     FLAGS_logtostderr = true;
@@ -202,12 +221,7 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
     settings.Apply();
     const CleanEnd clean_end;
     const int exit_code = body();
-    const bool is_written = std::fflush(stdout) == 0;
-    if (!is_written || std::ferror(stdout) != 0) {
-      throw InputError(
-          "the standard output cannot be written (" +
-          std::generic_category().message(is_written ? EIO : errno) + ")");
-    }
+    FinishOutput();
     return exit_code;
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", info.name.c_str(), error.what());

@@ -100,6 +100,10 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            "the standard output cannot be written (No space left on device)"},
           {"(exec >/dev/full; exec " + kBadEvaluation + kMany + ")",
            "the standard output cannot be written"},
+          {"(exec >/dev/full; exec " RGBD_EVALUATE " --help)",
+           "the standard output cannot be written (No space left on device)"},
+          {"(exec >/dev/full; exec " RGBD_EVALUATE " --version)",
+           "the standard output cannot be written (No space left on device)"},
       },
       [](const Seq& s) {
         s.Write("file", "mine");
