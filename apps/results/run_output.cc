@@ -143,7 +143,7 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
   if (!settings.save_cloud.empty()) RequireCloudFile(settings.save_cloud);
   if (!settings.save_mesh.empty() &&
-      settings.save_cloud == settings.save_mesh) {
+      IsSamePlace(settings.save_cloud, settings.save_mesh)) {
     throw InputError("--save_cloud and --save_mesh are the same file");
   }
 }

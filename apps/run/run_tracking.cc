@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/export/export_format.h"
 #include "apps/report/report_page.h"
@@ -71,8 +72,12 @@ void RequirePossible(const RunOutputSettings& output,
         " needs the frames a second time, but '" + dataset +
         "' is not a file or folder; record it with rgbd_convert first");
   }
-  RequireOutside("output", output.output, dataset);
-  if (!output.record.empty()) RequireOutside("record", output.record, dataset);
+  for (const auto& [flag, path] : {std::pair("output", output.output),
+                                   {"record", output.record},
+                                   {"save_cloud", output.save_cloud},
+                                   {"save_mesh", output.save_mesh}}) {
+    if (!path.empty()) RequireOutside(flag, path, dataset);
+  }
 }
 
 // What metrics.json has besides the metrics of every run.

@@ -91,8 +91,11 @@ void RequireOutside(const std::string& flag, const std::string& folder,
                     const std::string& recording,
                     const std::string& name = "recording");
 
-// Throws InputError if the folder of a flag is `other`, whose files would be
-// replaced or mixed with others.
+// Whether two paths name the same file or folder, also if there is none yet.
+bool IsSamePlace(const std::string& path, const std::string& other);
+
+// Throws InputError if the folder of a flag is `other` or contains it: their
+// files would be replaced or mixed.
 void RequireOtherFolder(const std::string& flag, const std::string& folder,
                         const std::string& other);
 

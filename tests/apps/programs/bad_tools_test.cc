@@ -154,6 +154,9 @@ TEST_F(BadInputTest, Maps) {
           {"--load_map=nowhere --calibrate", "--calibrate changes the camera"},
           {"--max_pairs=0", "max_pairs must be at least 1"},
           {"--save_map={dir}/out", "--save_map: must be another folder than "},
+          {"--save_map={dir}/none/../out/",
+           "--save_map: must be another folder than "},
+          {"--save_map={dir}", "--save_map: must be another folder than "},
           {"--save_map={seq}/map", "is in the recording's own folder {seq}"},
       });
 }
