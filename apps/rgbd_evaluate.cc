@@ -2,6 +2,7 @@
 
 #include <gflags/gflags.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -84,8 +85,9 @@ TruthNoise NoiseOfTruth() {
   TruthNoise noise = ReadTruthNoise(FLAGS_groundtruth);
   const auto take = [&noise](double flag, double unit, double* sigma) {
     if (flag == -1.0) return;
-    if (!(flag >= 0.0)) {
-      throw InputError("sigmas of the ground truth must not be negative");
+    if (!(flag >= 0.0) || !std::isfinite(flag)) {
+      throw InputError(
+          "sigmas of the ground truth must not be negative or infinite");
     }
     *sigma = flag * unit;
     noise.origin = "as the flags say";

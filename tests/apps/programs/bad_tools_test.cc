@@ -40,6 +40,8 @@ TEST_F(BadInputTest, Evaluate) {
           {"--rpe_delta_metres=0", "must be positive"},
           {"--truth_sigma_degrees=-2",
            "sigmas of the ground truth must not be negative"},
+          {"--truth_sigma_metres=inf",
+           "sigmas of the ground truth must not be negative or infinite"},
           {"--run={seq}", "--run contains a trajectory"},
           {"--estimate= --run={seq}/none",
            "{seq}/none/trajectory.txt: cannot be opened"},
