@@ -69,9 +69,11 @@ ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
 }
 
 cv::Mat DepthInMillimetres(const Frame& frame) {
+  const double per_unit = kMillimetresPerMetre / frame.depth_scale;
   cv::Mat depth = frame.depth.clone();
-  depth.setTo(0, frame.depth == Frame::kNoDepth);
-  depth.convertTo(depth, CV_16UC1, kMillimetresPerMetre / frame.depth_scale);
+  // Also 0 is what would not fit, beyond 65.5 m.
+  depth.setTo(0, frame.depth >= Frame::kNoDepth / std::max(1.0, per_unit));
+  depth.convertTo(depth, CV_16UC1, per_unit);
   return depth;
 }
 

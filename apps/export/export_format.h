@@ -139,7 +139,7 @@ struct ExportedViews {
 ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
                          const OnView& on_image);
 
-// Depth in whole millimetres (CV_16UC1), 0 where it is missing.
+// Depth in whole millimetres (CV_16UC1), 0 where it is missing or too large.
 cv::Mat DepthInMillimetres(const Frame& frame);
 
 // The file name of the image of a view, by its frame number.

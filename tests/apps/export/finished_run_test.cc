@@ -139,5 +139,16 @@ TEST(FinishedRunTest, SaysThatUpMustBeThreeNumbers) {
   }
 }
 
+// 65535 would be read as a depth of 65.5 m, or as none.
+TEST(DepthInMillimetresTest, WhatDoesNotFitIsMissing) {
+  Frame frame;
+  frame.depth_scale = 500.0;
+  frame.depth = (cv::Mat_<uint16_t>(1, 5) << 0, 1000, 32767, 32768, 65535);
+  const cv::Mat expected = (cv::Mat_<uint16_t>(1, 5) << 0, 2000, 65534, 0, 0);
+  EXPECT_EQ(cv::norm(DepthInMillimetres(frame), expected, cv::NORM_INF), 0.0);
+  frame.depth_scale = 5000.0;
+  EXPECT_EQ(DepthInMillimetres(frame).at<uint16_t>(3), 6554);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
