@@ -61,7 +61,9 @@ WrittenExport ExportPath(const Recording& recording,
     return open(/*keep_color=*/true);
   };
   const ReleasedGil no_gil;
-  return ExportRun(FinishedRun(std::move(path), open), to, options);
+  FinishedRun run(std::move(path), open);
+  run.sequence.dataset = recording.path();  // in which nothing may be written
+  return ExportRun(run, to, options);
 }
 
 WrittenExport ExportMap(const py::object& map, const std::string& to,

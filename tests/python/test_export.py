@@ -125,6 +125,8 @@ def test_says_what_is_wrong(run, recording, sequence, tmp_path):
     def of_run(folder=run, to="tum", output=tmp_path / "out", **settings):
         rgbd_pose.export_run(folder, to, output, **settings)
 
+    own = f"{sequence}/groundtruth.txt"
+
     def of_path(trajectory=path, to="mesh", output=tmp_path / "out.ply"):
         rgbd_pose.export_path(recording, trajectory, to, output)
 
@@ -134,6 +136,7 @@ def test_says_what_is_wrong(run, recording, sequence, tmp_path):
         ("no such folder", lambda: of_run(tmp_path / "none")),
         ("has no frames.csv", lambda: of_run(sequence)),
         ("unknown format 'obj'", lambda: of_run(to="obj")),
+        ("recording's own folder", lambda: of_path(to="tum", output=own)),
         ("max_points must be 8", lambda: of_run(max_points=1)),
         ("min_angle must not be negative", lambda: of_run(min_angle=-1.0)),
         ("max_depth must not be", lambda: of_run(to="mesh", max_depth=-1)),
