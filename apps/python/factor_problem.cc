@@ -128,7 +128,7 @@ FactorSolverSummary SolveFactors(const FactorSolverOptions& options,
   solver.parameter_tolerance = kTolerance;
   solver.gradient_tolerance = kTolerance;
   solver.callbacks.push_back(&end);
-  solver.max_num_consecutive_invalid_steps = options.max_iterations + 1;
+  solver.max_num_consecutive_invalid_steps = std::numeric_limits<int>::max();
   ceres::Solver::Summary summary;
   ceres::Solve(solver, ceres_problem.get(), &summary);
 

@@ -350,6 +350,7 @@ def test_wrong_arguments_are_refused():
         problem.covariance(two)
     with raises_one_line("max_iterations: .*"):
         rgbd_pose.solve(problem, max_iterations=0)
+    assert rgbd_pose.solve(problem, max_iterations=2**31 - 1).ok
     poses[1] = 0.0
     with raises_one_line("block 1 of the problem, a pose: is not finite, or .*"):
         rgbd_pose.solve(problem)
