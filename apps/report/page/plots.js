@@ -189,6 +189,12 @@ function bars(counts, from, width) {
   return {x, y};
 }
 
+// A link to a file beside the page, whose name may have any signs, such as # and
+// :, which have a meaning in links.
+function linkTo(path) {
+  return path.split('/').map(encodeURIComponent).join('/');
+}
+
 function table(head, rows, className) {
   const cell = (tag, content, label) => {
     const number = typeof content === 'object' && content.number !== undefined;
@@ -200,7 +206,7 @@ function table(head, rows, className) {
         : typeof content === 'object' ? content.text : content;
     const isLink = typeof content === 'object' && content.link;
     return make(tag, attributes,
-        isLink ? make('a', {href: encodeURI(content.link)}, text) : text);
+        isLink ? make('a', {href: linkTo(content.link)}, text) : text);
   };
   return make('div', {class: 'scroll'}, make('table', {class: className || ''},
       make('thead', {}, make('tr', {}, ...head.map(h => cell('th', h)))),

@@ -125,13 +125,13 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
       "rpe_seconds_rotation_deg,track_ms_median\n"
       "kitchen,point,huber,patch,hybrid,0-,1,ok,kitchen/"
       "a-r1,400,1,0.03,0.02,1.1,1.2\n"
-      "kitchen,point,huber,patch,hybrid,3-,1,ok,kitchen/b-r1,397,1,0.05,0.02,"
+      "kitchen,point,huber,patch,hybrid,3-,1,ok,10:05 #1/b-r1,397,1,0.05,0.02,"
       "1.1,1.2\n"
       "kitchen,point,tukey,patch,hybrid,0-,1,ok,kitchen/"
       "c-r1,400,1,0.04,0.03,1.2,1.3\n"
       "hall,point,huber,patch,hybrid,0-,1,ok,hall/a-r1,50,1,,,,1.2\n"
       "hall,point,tukey,patch,hybrid,0-,1,failed,hall/c-r1,,,,,,\n");
-  folder_.Write("run/kitchen/b-r1/report.html", "");
+  folder_.Write("run/10:05 #1/b-r1/report.html", "");
   const RunResult report = Run(RGBD_REPORT " --batch=" + (folder_ / "run"));
   ASSERT_EQ(report.exit_code, 0) << report.err;
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
@@ -139,7 +139,7 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
   EXPECT_EQ(CountOf(kPlot, drawn), 4);
   EXPECT_EQ(CountOf(">failed</td>", drawn), 1);
   EXPECT_EQ(CountOf("<a href=", drawn), 1);  // to the only report
-  EXPECT_THAT(drawn, HasSubstr("<a href=\"kitchen/b-r1/report.html\">"));
+  EXPECT_THAT(drawn, HasSubstr("<a href=\"10%3A05%20%231/b-r1/report.html\">"));
   EXPECT_THAT(drawn, HasSubstr("40.0 (30.0 to 50.0)"));  // of two parts
 }
 
