@@ -34,15 +34,7 @@ void RemoveDebugImages(const fs::path& folder) {
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path)
-    : path_(path),
-      is_new_(!PathExists(path_)),
-      staging_(path_ / kAside, "--output: " + path_.string()) {}
-
-RunFolder::~RunFolder() {
-  std::error_code ignored;
-  fs::remove_all(staging_dir(), ignored);
-  if (is_new_) fs::remove(path_, ignored);  // if empty
-}
+    : path_(path), staging_(path_ / kAside, "--output: " + path_.string()) {}
 
 void RunFolder::WriteFile(const char* name, const std::string& content) const {
   WriteFileAtomically(staging_dir() / name, content);

@@ -9,16 +9,12 @@ namespace rgbd_pose {
 
 // The folder for the results of a run. Files are first written to a staging
 // folder inside it and moved to their places together, so a failed run leaves
-// earlier results unchanged. Two runs cannot use the folder at the same time.
+// earlier results unchanged: what is not published is removed. Two runs cannot
+// use the folder at the same time.
 class RunFolder {
  public:
   // Creates the folder. Throws InputError if it is in use or not writable.
   explicit RunFolder(const std::string& path);
-
-  // Removes all unpublished files.
-  ~RunFolder();
-  RunFolder(const RunFolder&) = delete;
-  RunFolder& operator=(const RunFolder&) = delete;
 
   // The folder for files that are not yet published.
   const std::filesystem::path& staging_dir() const { return staging_.path(); }
@@ -32,7 +28,6 @@ class RunFolder {
 
  private:
   const std::filesystem::path path_;
-  const bool is_new_;
   const LockedFolder staging_;
 };
 

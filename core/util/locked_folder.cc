@@ -43,6 +43,10 @@ LockedFolder::LockedFolder(fs::path path, const std::string& name,
                      error.message() + ")");
   };
   std::error_code error;
+  for (fs::path above = path_.parent_path();
+       !above.empty() && !PathExists(above); above = above.parent_path()) {
+    above_.push_back(above);
+  }
   // The last user removes the folder when it ends. A program that opened it
   // just before must create and lock it again.
   do {
@@ -98,6 +102,8 @@ void LockedFolder::Remove() const {
   for (int attempt = 0; attempt < 100 && IsAt(lock_, path_); ++attempt) {
     fs::remove_all(path_, error);
   }
+  // Not those in which there is something by now, such as results.
+  for (const fs::path& above : above_) fs::remove(above, error);
 }
 
 }  // namespace rgbd_pose

@@ -28,6 +28,22 @@ TEST(LockedFolderTest, BelongsToOneProgramAndIsRemovedInTheEnd) {
   EXPECT_FALSE(fs::exists(path));
 }
 
+TEST(LockedFolderTest, WhatWasCreatedForItIsRemovedIfItIsEmpty) {
+  const TempFolder folder;
+  folder.Write("old/file.txt", "");
+  { const LockedFolder failed(folder / "runs/new/partial", "failed"); }
+  EXPECT_FALSE(fs::exists(folder / "runs"));
+  const LockedFolder ended(folder / "old/new/partial", "ended");
+  LockedFolder::RemoveAll();
+  EXPECT_FALSE(fs::exists(folder / "old/new"));
+  EXPECT_TRUE(fs::exists(folder / "old"));
+  {
+    const LockedFolder done(folder / "runs/new/partial", "done");
+    folder.Write("runs/new/results.txt", "");
+  }
+  EXPECT_TRUE(fs::exists(folder / "runs/new/results.txt"));
+}
+
 TEST(LockedFolderTest, WithSomethingPreciousIsNotEmptied) {
   const TempFolder folder;
   folder.Write("new/list.txt", "recorded by a killed program");
