@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/open_file.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -21,14 +21,6 @@ namespace fs = std::filesystem;
 
 std::mutex mutex;  // guards `folders`
 std::set<const LockedFolder*> folders;
-
-// Whether `file` is still the folder at `path`.
-bool IsAt(int file, const fs::path& path) {
-  struct stat open_one, one_there;
-  return fstat(file, &open_one) == 0 && stat(path.c_str(), &one_there) == 0 &&
-         open_one.st_dev == one_there.st_dev &&
-         open_one.st_ino == one_there.st_ino;
-}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include "core/util/text_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <system_error>
 
 #include "core/util/input_error.h"
+#include "core/util/open_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -42,15 +44,50 @@ void RefuseDevice(const std::string& path) {
   }
 }
 
-std::FILE* OpenToWrite(const std::string& path) {
-  RefuseDevice(path);
-  std::FILE* file = std::fopen(TemporaryPath(path).c_str(), "wb");
-  if (file == nullptr) {
-    throw InputError(path + ": cannot be written " + LastFailure() +
-                     "; check that its folder exists and is writable");
+// The file that is renamed when it is complete. One writer at a time has it;
+// others wait.
+class TemporaryFile {
+ public:
+  // Throws InputError if it cannot be created.
+  explicit TemporaryFile(const std::string& path) : path_(TemporaryPath(path)) {
+    RefuseDevice(path);
+    do {
+      if (file_ >= 0) close(file_);
+      file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+      if (file_ < 0) {
+        throw InputError(path + ": cannot be written " + LastFailure() +
+                         "; check that its folder exists and is writable");
+      }
+      // File systems without locks are accepted.
+      while (flock(file_, LOCK_EX) != 0 && errno == EINTR) {
+      }
+    } while (!IsAt(file_, path_));  // it was renamed or removed meanwhile
   }
-  return file;
-}
+  ~TemporaryFile() { close(file_); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  // The following return false on failure, as errno says.
+  bool Write(std::string_view content) const {
+    if (ftruncate(file_, 0) != 0) return false;
+    while (!content.empty()) {
+      const ssize_t written = write(file_, content.data(), content.size());
+      if (written < 0 && errno != EINTR) return false;
+      content.remove_prefix(std::max<ssize_t>(written, 0));
+    }
+    // Some network file systems tell only now; the lock stays.
+    return close(dup(file_)) == 0;
+  }
+  bool Sync() const { return fsync(file_) == 0; }
+  bool MoveTo(const std::string& path) const {
+    return std::rename(path_.c_str(), path.c_str()) == 0;
+  }
+  void Remove() const { std::remove(path_.c_str()); }
+
+ private:
+  const std::string path_;
+  int file_ = -1;
+};
 
 }  // namespace
 
@@ -188,18 +225,13 @@ std::string TemporaryPath(const std::string& path) { return path + ".partial"; }
 
 void WriteFileAtomically(const std::string& path, std::string_view content,
                          Durability durability) {
-  const std::string temporary = TemporaryPath(path);
-  std::FILE* file = OpenToWrite(path);
-  const bool written =
-      std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
-      std::fflush(file) == 0 &&
-      (durability == Durability::kCrash || fsync(fileno(file)) == 0);
-  std::string reason = written ? "" : LastFailure();
-  if (std::fclose(file) != 0 && written) reason = LastFailure();
-  if (reason.empty() && std::rename(temporary.c_str(), path.c_str()) == 0)
+  const TemporaryFile file(path);
+  if (file.Write(content) &&
+      (durability == Durability::kCrash || file.Sync()) && file.MoveTo(path)) {
     return;
-  if (reason.empty()) reason = LastFailure();
-  std::remove(temporary.c_str());
+  }
+  const std::string reason = LastFailure();
+  file.Remove();
   throw InputError(path + ": writing failed " + reason);
 }
 
@@ -214,9 +246,7 @@ void SyncFolder(const std::string& path) {
 
 void RequireWritable(const std::string& path) {
   RefuseFolder(path);
-  std::fclose(OpenToWrite(path));
-  std::error_code ignored;
-  std::filesystem::remove(TemporaryPath(path), ignored);
+  TemporaryFile(path).Remove();
 }
 
 }  // namespace rgbd_pose

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <filesystem>
+#include <future>
 #include <string>
 
 #include "tests/support/expect_input_error.h"
@@ -129,6 +130,28 @@ TEST(TextFileTest, NamesTheFileItCannotWrite) {
                    {folder / "b.txt"});
   const std::filesystem::directory_iterator files(folder.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+// Two programs may have the same output, or two threads of Python.
+TEST(TextFileTest, ContentsOfTwoWritersAreNotMixed) {
+  const TempFolder folder;
+  const std::string file = folder / "a.txt";
+  constexpr int kTimes = 200;
+  const auto write = [&file](size_t size, char sign) {
+    for (int i = 0; i < kTimes; ++i) {
+      WriteFileAtomically(file, std::string(size, sign));
+    }
+  };
+  WriteFileAtomically(file, "b");
+  std::future<void> one = std::async(std::launch::async, write, 300000, 'a');
+  std::future<void> other = std::async(std::launch::async, write, 200000, 'b');
+  for (int i = 0; i < kTimes; ++i) {
+    RequireWritable(file);
+    const std::string content = ReadTextFile(file);
+    ASSERT_EQ(content.find_first_not_of(content[0]), content.npos);
+  }
+  EXPECT_NO_THROW(one.get());
+  EXPECT_NO_THROW(other.get());
 }
 
 // For root, nothing else would keep a file from taking the place of /dev/null.
