@@ -231,8 +231,12 @@ int Main() {
   const std::string settings =
       "program " + HashProgram(program) + "\n" +
       (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
-  const std::vector<BatchRun> plan =
-      MakePlan(ReadSequenceList(FLAGS_sequences), grid, shard, settings);
+  const std::vector<BatchSequence> sequences =
+      ReadSequenceList(FLAGS_sequences);
+  for (const BatchSequence& sequence : sequences) {
+    RequireOutside("output", FLAGS_output, sequence.folder);
+  }
+  const std::vector<BatchRun> plan = MakePlan(sequences, grid, shard, settings);
   const BatchFolder folder(fs::absolute(FLAGS_output).string());
   if (FLAGS_dry_run) return PrintPlan(plan, folder);
 

@@ -102,8 +102,9 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            kOwn},
           {kSweep + "--output={seq}/file/out",
            "--output={seq}/file/out: cannot be created (Not a directory)"},
-          {RGBD_BATCH " --sequences={seq}/list --output={seq}/file/out",
-           "--output={seq}/file/out: cannot be created (Not a directory)"},
+          {RGBD_BATCH " --sequences={seq}/list --output={dir}/small.yaml/out",
+           "--output={dir}/small.yaml/out: cannot be created (Not a dir"},
+          {RGBD_BATCH " --sequences={seq}/list --output={seq}/out", kOwn},
           {kBadEvaluation + "--aligned={seq}/file/aligned.txt",
            "{seq}/file/aligned.txt: cannot be written (Not a directory)"},
           // Nobody takes the output, or more of it than a buffer holds.
