@@ -38,7 +38,7 @@ simulate 0 3
 [ "$(cat "$folder/xyz/frames")" = 3 ] || fail "it was not repeated"
 simulate 0 4
 [ "$(cat "$folder/xyz/frames")" = 3 ] || fail "a complete one was repeated"
-for script in accuracy demo frontends; do
+for script in accuracy demo endurance frontends; do
   grep -q simulate_once "$source/scripts/$script" ||
     fail "scripts/$script renders by itself"
 done
