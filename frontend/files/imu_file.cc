@@ -1,6 +1,7 @@
 #include "frontend/files/imu_file.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/inertial/imu_check.h"
 #include "core/util/format.h"
@@ -92,7 +93,7 @@ ImuRecording ReadImuFile(const std::string& path) {
                                      : Columns{kAccelColumns, 0, 1};
   ImuRecording recording;
   recording.has_gyro = has_gyro;
-  double latest = 0.0;
+  double latest = std::numeric_limits<double>::lowest();
   for (const TextLine& line : lines) {
     const ImuSample sample = ParseRow(line, columns, path);
     latest = std::max(latest, sample.stamp);

@@ -49,6 +49,12 @@ TEST_F(ImuFileTest, ReadsSecondsAndAnAccelerometerAlone) {
   EXPECT_TRUE(imu.samples[1].gyro.isZero(0.0));
 }
 
+TEST_F(ImuFileTest, AClockMayBeginBelowZero) {
+  const ImuRecording imu = Read("-0.51 0 0 9.8\n-0.5 0 0 9.8\n0.01 0 0 9.8\n");
+  ASSERT_EQ(imu.samples.size(), 3u);
+  EXPECT_EQ(imu.samples[0].stamp, -0.51);
+}
+
 TEST_F(ImuFileTest, NamesTheLineOfWhatIsWrong) {
   ExpectInputError([&] { Read("# nothing\n"); }, {"imu.csv: no samples"});
   ExpectInputError([&] { Read("1.0 0 0 9.8\n1.1 0 0\n"); },
