@@ -1,5 +1,7 @@
 // Exports poses: TUM, KITTI, g2o.
 
+#include <algorithm>
+
 #include "apps/export/export_format.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/slam_output.h"
@@ -13,6 +15,18 @@ int Count(std::string_view word, std::string_view text) {
   int count = 0;
   for (size_t at = 0; (at = text.find(word, at)) != text.npos; ++at) ++count;
   return count;
+}
+
+// What users should know of poses that are not in the world of the first one.
+std::string OtherWorlds(const FinishedRun& run) {
+  const auto others =
+      std::count_if(run.segments.begin(), run.segments.end(),
+                    [&run](int segment) { return segment != run.segments[0]; });
+  if (others == 0) return "";
+  return Format(
+      "%d of the poses are of other segments: their position relative to the "
+      "first segment is unknown\n",
+      static_cast<int>(others));
 }
 
 // The motions measured by rgbd_odometry, as a graph of all frames with a pose.
@@ -49,7 +63,8 @@ std::string GraphAsText(const FinishedRun& run) {
 std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
   WriteFileAtomically(options.output, FormatTrajectory(run.trajectory));
   return Format("%zu poses in %s\n", run.trajectory.size(),
-                options.output.c_str());
+                options.output.c_str()) +
+         OtherWorlds(run);
 }
 
 // Writes one line per pose, the upper rows of world_from_cam, and a file of
@@ -76,7 +91,7 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
             " frames have no pose and therefore no line: line numbers are not "
             "frame numbers; see times.txt\n";
   }
-  return text;
+  return text + OtherWorlds(run);
 }
 
 std::string ExportG2o(const FinishedRun& run, const ExportOptions& options) {

@@ -139,6 +139,28 @@ TEST(FinishedRunTest, SaysThatUpMustBeThreeNumbers) {
   }
 }
 
+TEST(PoseExportsTest, TellOfPosesInOtherWorlds) {
+  const TempFolder folder;
+  folder.Write("run/frames.csv", "status,segment\nok,0\nok,1\nok,1\n");
+  folder.Write("run/trajectory.txt",
+               "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n");
+  folder.Write("run/config.flags", "# Input\n--dataset=none\n");
+  FinishedRun run(folder / "run");
+  ExportOptions options;
+  for (const auto write : {ExportTum, ExportKitti}) {
+    options.output = folder / (write == ExportTum ? "tum.txt" : "kitti");
+    const std::string text = "3 poses in " + options.output + "\n";
+    run.segments = {0, 1, 1};
+    EXPECT_EQ(write(run, options),
+              text +
+                  "2 of the poses are of other segments: their position "
+                  "relative to the first segment is unknown\n");
+    run.segments = {0, 0, 0};
+    options.overwrite = true;
+    EXPECT_EQ(write(run, options), text);
+  }
+}
+
 // 65535 would be read as a depth of 65.5 m, or as none.
 TEST(DepthInMillimetresTest, WhatDoesNotFitIsMissing) {
   Frame frame;
