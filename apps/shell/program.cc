@@ -149,23 +149,6 @@ std::vector<std::string> Words(int argc, char** argv) {
   return words;
 }
 
-// The place that a path names, also if there is nothing yet. Made absolute
-// first: otherwise the result for a name in this folder that is new is relative
-// and cannot be compared.
-std::filesystem::path PlaceOf(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  const fs::path place = fs::weakly_canonical(absolute, error);
-  return ((error ? absolute.lexically_normal() : place) / "").parent_path();
-}
-
-// Whether a path is a folder or below it.
-bool IsIn(const std::string& folder, const std::string& path) {
-  const auto below = PlaceOf(path).lexically_relative(PlaceOf(folder));
-  return !below.empty() && *below.begin() != "..";
-}
-
 // "runs/NAME" or the first of runs/NAME-2, runs/NAME-3, ... that is not there.
 std::string NewOutput(const std::string& dataset) {
   namespace fs = std::filesystem;
@@ -280,17 +263,6 @@ void RequireFlag(const std::string& name, const std::string& value) {
   if (value.empty()) throw UsageError("--" + name + " is needed; see --help");
 }
 
-bool IsSamePlace(const std::string& path, const std::string& other) {
-  return PlaceOf(path) == PlaceOf(other);
-}
-
-void RequireOtherFolder(const std::string& flag, const std::string& folder,
-                        const std::string& other) {
-  if (!IsIn(folder, other)) return;
-  throw InputError("--" + flag + ": must be another folder than " + other +
-                   ", and none that contains it");
-}
-
 std::string WithHome(const std::string& text) {
   std::string result;
   for (size_t i = 0; i < text.size(); ++i) {
@@ -307,19 +279,6 @@ std::string WithHome(const std::string& text) {
     result += home;
   }
   return result;
-}
-
-void RequireOutside(const std::string& flag, const std::string& folder,
-                    const std::string& recording, const std::string& name) {
-  std::error_code error;
-  if (!std::filesystem::is_directory(recording, error)) {
-    if (!std::filesystem::equivalent(folder, recording, error)) return;
-    throw InputError("--" + flag + "=" + folder + ": is the " + name +
-                     " itself; choose another name");
-  }
-  if (!IsIn(recording, folder)) return;
-  throw InputError("--" + flag + "=" + folder + ": is in the " + name +
-                   "'s own folder " + recording + "; choose one outside it");
 }
 
 int AvailableCores() {
