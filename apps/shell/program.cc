@@ -1,8 +1,10 @@
 #include "apps/shell/program.h"
 
+#include <fcntl.h>
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -174,6 +176,16 @@ void SetDefaultOutput() {
   gflags::SetCommandLineOption("output", NewOutput(dataset).c_str());
 }
 
+// Fills the places of standard streams that the caller has closed: a file that
+// is opened later would get their number, and what is printed. Printing still
+// fails.
+void FillClosedStreams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (fcntl(stream, F_GETFD) != -1) continue;
+    open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 // Prints the help or the version, if an argument asks for it. Returns whether
 // one does.
 bool PrintHelp(int argc, char** argv, const ProgramInfo& info) {
@@ -203,6 +215,7 @@ void FinishOutput() {
 
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body) {
+  FillClosedStreams();
   const SettingFlags settings(info.settings);
   try {
     if (PrintHelp(argc, argv, info)) {

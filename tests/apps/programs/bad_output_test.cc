@@ -112,6 +112,8 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            "the standard output cannot be written (No space left on device)"},
           {"(exec >/dev/full; exec " + kBadEvaluation + kMany + ")",
            "the standard output cannot be written"},
+          {"(exec <&- >&-; exec " + kBadEvaluation + ")",
+           "the standard output cannot be written (Bad file descriptor)"},
           {"(exec >/dev/full; exec " RGBD_EVALUATE " --help)",
            "the standard output cannot be written (No space left on device)"},
           {"(exec >/dev/full; exec " RGBD_EVALUATE " --version)",
