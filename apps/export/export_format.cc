@@ -28,7 +28,8 @@ constexpr char kContent[] = ".exported_files";
 std::vector<std::string> FilesIn(const fs::path& folder) {
   std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_directory()) continue;
+    std::error_code error;  // a link to itself is no folder
+    if (entry.is_directory(error)) continue;
     files.push_back(entry.path().lexically_relative(folder).string());
   }
   std::sort(files.begin(), files.end());

@@ -54,7 +54,7 @@ void Apply(const nlohmann::json& flags, const std::string& file,
 // slam.csv also that of trajectory.txt, where segments that met are one.
 std::vector<double> SegmentsOf(const fs::path& run, const CsvTable& frames) {
   const std::string map_frames = (run / "slam.csv").string();
-  if (!fs::exists(map_frames)) return frames.Numbers("segment");
+  if (!PathExists(map_frames)) return frames.Numbers("segment");
   const CsvTable table = CsvTable::Read(map_frames);
   if (table.size() != frames.size()) {
     throw InputError(map_frames + ": has " + std::to_string(table.size()) +
@@ -67,7 +67,7 @@ std::vector<double> SegmentsOf(const fs::path& run, const CsvTable& frames) {
 // What metrics.json says of gravity in the world of a segment; nothing if it is
 // not known there.
 std::optional<Eigen::Vector3d> ReadUp(const fs::path& metrics, int segment) {
-  if (!fs::exists(metrics)) return std::nullopt;
+  if (!PathExists(metrics)) return std::nullopt;
   const auto json = nlohmann::json::parse(ReadTextFile(metrics), nullptr,
                                           /*allow_exceptions=*/false);
   const auto gravity = json.find("gravity");
@@ -118,11 +118,12 @@ FinishedRun::FinishedRun(const std::string& run_folder,
                          const std::string& dataset, const std::string& camera)
     : folder(run_folder) {
   const fs::path path(folder);
-  if (!fs::is_directory(path)) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
     throw InputError("--run: " + folder + ": no such folder");
   }
   for (const char* file : {"frames.csv", "config.flags"}) {
-    if (!fs::exists(path / file)) {
+    if (!PathExists(path / file)) {
       throw InputError("--run: " + folder + " has no " + file +
                        "; give a results folder of rgbd_odometry or rgbd_slam");
     }
@@ -184,7 +185,7 @@ Rigid3d LevelFromWorld(const Eigen::Vector3d& up) {
 std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run) {
   if (run.open != nullptr) return run.open();
   SequenceSettings settings = run.sequence;
-  if (!fs::exists(settings.dataset)) {
+  if (!PathExists(settings.dataset)) {
     throw InputError("the recording of the run, " + settings.dataset +
                      ", does not exist; give its location with --dataset");
   }

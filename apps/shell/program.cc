@@ -242,6 +242,11 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s: %s\n", info.name.c_str(), error.what());
     return kExitBadInput;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "%s: %s: %s; check the path and permissions\n",
+                 info.name.c_str(), error.path1().c_str(),
+                 error.code().message().c_str());
+    return kExitBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: unexpected: %s\n", info.name.c_str(),
                  error.what());

@@ -271,8 +271,15 @@ TEST_F(BadInputTest, Export) {
            "--output={seq}/rgb.txt: is in the recording's own folder {seq}"},
           {"--to=ros2 --dataset={dir}/mine --output={dir}/mine",
            "--output={dir}/mine: is the recording itself"},
+          {"--run={dir}/loop", "--run: {dir}/loop: no such folder"},
+          {"--output={dir}/loop",
+           "rgbd_export: {dir}/loop: Too many levels of symbolic links; check"},
       },
-      RunAnd([](const Seq& s) { s.Write("../mine", "mine"); }));
+      RunAnd([](const Seq& s) {
+        s.Write("../mine", "mine");
+        std::error_code is_there;
+        std::filesystem::create_symlink("loop", s / "../loop", is_there);
+      }));
   ExpectEach(
       kExport,
       {
