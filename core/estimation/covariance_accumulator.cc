@@ -57,18 +57,20 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   return root * root.transpose();
 }
 
-// Least squares of inliers; nothing of the others.
+// Least squares of inliers, with the weight of their term in the sum; nothing
+// of the others.
 class InliersOnly final : public ceres::LossFunction {
  public:
-  explicit InliersOnly(double limit) : limit_(limit) {}
+  InliersOnly(double limit, double factor) : limit_(limit), factor_(factor) {}
   void Evaluate(double s, double rho[3]) const override {
-    rho[0] = std::min(s, limit_);
-    rho[1] = s <= limit_ ? 1.0 : 0.0;
+    rho[0] = factor_ * std::min(s, limit_);
+    rho[1] = s <= limit_ ? factor_ : 0.0;
     rho[2] = 0.0;
   }
 
  private:
   double limit_;  // of the squared norm
+  double factor_;
 };
 
 // The same for a cost that has another limit for each match.
@@ -84,9 +86,9 @@ void AddInliers(const RobustTerm& term, const Rigid3d& cur_from_prev,
     if (term.norms[k] > term.scale * term.scale * limit) continue;
     const size_t first = k * rows;
     const auto J = jacobian.middleRows(static_cast<Eigen::Index>(first), rows);
-    sum->hessian += J.transpose() * J;
-    sum->gradient +=
-        J.transpose() * Eigen::Map<Eigen::VectorXd>(&residuals[first], rows);
+    const auto r = Eigen::Map<Eigen::VectorXd>(&residuals[first], rows);
+    sum->hessian += term.factor() * J.transpose() * J;
+    sum->gradient += term.factor() * J.transpose() * r;
   }
 }
 
@@ -293,7 +295,8 @@ double CovarianceAccumulator::PullOfOutliers(
       term.cost->Linearise(motion, term.scaled_or_null(), &inliers);
     } else if (term.cost->is_whitened()) {
       const int p = term.cost->degrees_of_freedom();
-      const InliersOnly only(term.scale * term.scale * ChiSquared99(p));
+      const InliersOnly only(term.scale * term.scale * ChiSquared99(p),
+                             term.factor());
       term.cost->Linearise(motion, &only, &inliers);
     } else {
       AddInliers(term, cur_from_prev, &inliers);

@@ -222,6 +222,30 @@ TEST(OutliersThatPullTest, AreNoticedByACostThatIsNotWhitened) {
   }
 }
 
+// Nothing is wrong but the sigmas of the matches, a quarter of what they should
+// be. The estimated scale tells how matches and prior weigh; without it the
+// matches alone would be elsewhere.
+TEST(OutliersThatPullTest, AreNoneIfSigmasAreTooSmall) {
+  EstimatorOptions options;
+  options.scale = MadScale;
+  for (const char* cost : {"reprojection_depth", "point_to_point"}) {
+    Estimator estimator(
+        options,
+        MakeRobustCosts(cost + std::string("+motion_prior"), "huber,none"));
+    for (int seed = 0; seed < 40; ++seed) {
+      RandomWorld world(seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      const Correspondences matches =
+          WithSigmas(world.Matches(300, 0.0, truth), 0.25);
+      const MotionPrior prior = world.Prior(truth, 1e-4);
+      const MotionEstimate estimate =
+          estimator.Estimate(matches, Rigid3d(), &prior);
+      EXPECT_TRUE(estimate.ok())
+          << cost << ", seed " << seed << ": " << estimate.reason;
+    }
+  }
+}
+
 // A prior with a wrong mean and no loss moves the estimate by many sigmas of
 // the matches, or is moved by many of its own. (A prior that is more exact than
 // the matches by far, so that they do not contradict it, cannot be noticed.)
