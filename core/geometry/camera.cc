@@ -22,12 +22,13 @@ Vector2d Distort(const Lens<double>& lens, const Vector2d& point) {
   return distorted;
 }
 
-// The inverse of Distort by Newton's method, in three or four steps. Returns
-// false if it does not converge, as it may where the lens is hardly invertible.
+// The inverse of Distort by Newton's method from a first guess, in three or
+// four steps. Returns false if it does not converge, or to where the lens has
+// folded the image over.
 bool InvertByNewton(const Lens<double>& lens, const Vector2d& distorted,
                     Vector2d* point) {
   constexpr int kMaxSteps = 10;
-  *point = distorted;
+  constexpr double kLongestStep = 0.3;  // longer ones may jump across a fold
   for (int i = 0; i < kMaxSteps; ++i) {
     DistortedPoint<double> at;
     lens.Distort(point->x(), point->y(), &at);
@@ -37,31 +38,25 @@ bool InvertByNewton(const Lens<double>& lens, const Vector2d& distorted,
                         (at.x_x * y - at.x_y * x) / determinant);
     *point += step;
     const double change = step.lpNorm<Eigen::Infinity>();
-    if (change <= kTolerance) return true;
-    if (!(change < 1.0)) return false;
+    if (change <= kTolerance) return determinant > 0.0;
+    if (!(change < kLongestStep)) return false;
   }
   return false;
 }
 
-// The inverse of Distort; arbitrary if there is none. Divides by the radial
-// factor, which contracts faster for large k1 than subtracting the shift.
+// The inverse of Distort; NaN if there is none. Beyond a fold of the lens other
+// points have the same image: where Newton's method may have jumped there, the
+// inverse is followed from the middle of the image outwards.
 Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
-  Vector2d point;
+  Vector2d point = distorted;
   if (InvertByNewton(lens, distorted, &point)) return point;
-  point = distorted;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    const double x = point.x();
-    const double y = point.y();
-    const double r2 = x * x + y * y;
-    double radial;
-    lens.Radial(r2, &radial);
-    const Vector2d tangential(
-        2.0 * lens.p1 * x * y + lens.p2 * (r2 + 2.0 * x * x),
-        lens.p1 * (r2 + 2.0 * y * y) + 2.0 * lens.p2 * x * y);
-    const Vector2d next = (distorted - tangential) / radial;
-    const double change = (next - point).lpNorm<Eigen::Infinity>();
-    point = next;
-    if (!(change > kTolerance)) break;
+  constexpr int kSteps = 20;
+  point.setZero();
+  for (int i = 1; i <= kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    if (!InvertByNewton(lens, share * distorted, &point)) {
+      return Vector2d::Constant(std::nan(""));
+    }
   }
   return point;
 }

@@ -92,6 +92,31 @@ TEST(CameraTest, UndistortGivesNothingBeyondWhereTheLensFolds) {
   EXPECT_GT(outside, 10000);
 }
 
+// This barrel lens folds at r = 2.5, far from the start of Newton's method,
+// from where a whole step would lead across the fold.
+TEST(CameraTest, UndistortStaysOnThisSideOfTheFold) {
+  constexpr double kTolerancePx = 1e-10;
+  Camera camera = {640, 480, 200.0, 200.0, 319.5, 239.5, -0.4, 0.12};
+  camera.k3 = -0.01;
+  double fold = 0.0;
+  while (camera.ProjectDerivative({fold, 0.0})(0, 0) > 0.0) fold += 1e-4;
+  const double last_seen =
+      (camera.Project({fold, 0.0, 1.0}).x() - camera.cx) / camera.fx;
+  int inside = 0;
+  for (int v = 0; v < camera.height; v += 3) {
+    for (int u = 0; u < camera.width; u += 3) {
+      const Vector2d pixel(u, v);
+      if (camera.Ray(u, v).head<2>().norm() > 0.999 * last_seen) continue;
+      const Vector2d ideal = camera.Undistort(pixel);
+      const Vector3d ray = camera.Ray(ideal.x(), ideal.y());
+      EXPECT_LT((camera.Project(ray) - pixel).norm(), kTolerancePx) << pixel;
+      EXPECT_LT(ray.head<2>().norm(), fold) << pixel;
+      ++inside;
+    }
+  }
+  EXPECT_GT(inside, 30000);
+}
+
 TEST(CameraTest, ChecksItsParameters) {
   EXPECT_EQ(Camera{}.Check(), "");
   Camera nan_fx, negative_fy, centre_outside, no_height;
