@@ -57,6 +57,12 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   return root * root.transpose();
 }
 
+// Whether the blocks are of matches, not of pixels or of a prior.
+bool IsOfMatches(const RobustTerm& term) {
+  const std::vector<int>& matches = term.cost->matches();
+  return term.has_scale() && !matches.empty() && matches.front() >= 0;
+}
+
 // Least squares of inliers, with the weight of their term in the sum; nothing
 // of the others.
 class InliersOnly final : public ceres::LossFunction {
@@ -258,6 +264,17 @@ NormalEquations CovarianceAccumulator::Linearise(
   return sum;
 }
 
+double CovarianceAccumulator::KnownByPixels(const RobustProblem& problem,
+                                            const MotionVector& change) const {
+  double known = 0.0;
+  for (size_t i = 0; i < shares_.size(); ++i) {
+    const RobustTerm& term = problem.terms()[i];
+    if (!term.has_scale() || IsOfMatches(term)) continue;
+    known += change.dot(shares_[i].hessian * change);
+  }
+  return known;
+}
+
 MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& problem,
                                                const MotionDerivatives& motion,
                                                const MotionMatrix& inverse) {
@@ -282,9 +299,7 @@ double CovarianceAccumulator::PullOfOutliers(
     const MotionMatrix& covariance) const {
   // Pixels at edges and of hidden surfaces disagree in every pair.
   const auto pulls = [](const RobustTerm& term) {
-    const std::vector<int>& matches = term.cost->matches();
-    return term.has_scale() && !matches.empty() && matches.front() >= 0 &&
-           PullsAtAnyDistance(term.scaled, term.scale);
+    return IsOfMatches(term) && PullsAtAnyDistance(term.scaled, term.scale);
   };
   const auto& terms = problem.terms();
   if (std::none_of(terms.begin(), terms.end(), pulls)) return 0.0;

@@ -81,6 +81,10 @@ class CovarianceAccumulator {
   NormalEquations Linearise(const RobustProblem& problem,
                             const MotionDerivatives& motion);
 
+  // The information of pixels alone on a change of the motion.
+  double KnownByPixels(const RobustProblem& problem,
+                       const MotionVector& change) const;
+
   // `inverse` is the inverse of the whole Hessian.
   MotionMatrix Covariance(const RobustProblem& problem,
                           const MotionDerivatives& motion,

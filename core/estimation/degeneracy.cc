@@ -160,12 +160,13 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
 }
 
 void JudgeWeakestRotation(const Correspondences& matches,
-                          const MotionEstimate& estimate,
+                          const MotionEstimate& estimate, double by_pixels,
                           double spurious_information,
                           double max_standard_deviation, Degeneracy* result) {
   const double share =
       SupportedShare(matches, estimate, result->weakest_rotation);
-  const double known = share * result->known_rotation;
+  const double known =
+      by_pixels + share * std::max(result->known_rotation - by_pixels, 0.0);
   const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
   if (known >= std::max(least, kSpuriousMargin * spurious_information)) return;
   MotionVector rotation = result->weakest_rotation;

@@ -34,9 +34,11 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
 
 // The same for the weakest rotation, known by inliers without the three that
 // contribute most. If the right matches leave a rotation open, the estimate
-// turns until a wrong match, of a long lever, agrees by chance.
+// turns until a wrong match, of a long lever, agrees by chance. `by_pixels`:
+// the part of known_rotation that comes from pixels: these are many and count
+// in full, unlike a prior, which gives way to such a match.
 void JudgeWeakestRotation(const Correspondences& matches,
-                          const MotionEstimate& estimate,
+                          const MotionEstimate& estimate, double by_pixels,
                           double spurious_information,
                           double max_standard_deviation, Degeneracy* result);
 

@@ -153,7 +153,9 @@ class Estimator::Impl {
         FindDegeneracy(sum.hessian, spurious, options_.max_standard_deviation);
     if (!degeneracy.is_degenerate() &&
         out_->num_inliers < kHardlyWrong * terms_.num_used()) {
-      JudgeWeakestRotation(*matches_, *out_, spurious,
+      const double by_pixels =
+          shares_.KnownByPixels(terms_, degeneracy.weakest_rotation);
+      JudgeWeakestRotation(*matches_, *out_, by_pixels, spurious,
                            options_.max_standard_deviation, &degeneracy);
     }
     if (degeneracy.is_degenerate()) {

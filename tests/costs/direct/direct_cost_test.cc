@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -123,6 +124,28 @@ TEST_P(DirectCostTest, NoImagesLeaveOtherCostsAlone) {
         Estimator(options, std::move(terms)).Estimate(matches);
     EXPECT_TRUE(estimate.ok()) << estimate.reason;
     EXPECT_LE(ErrorOf(estimate.cur_from_prev, truth).translation, 0.01);
+  }
+}
+
+// Pixels determine the motion beside a few matches, too, of which none is left
+// without the three that know most. A corner of the image shows something else.
+TEST(DirectEstimateTest, AFewMatchesTakeNothingFromPixels) {
+  DirectPair pair = SmallPair();
+  cv::Mat corner = pair.cur.frame.gray(cv::Rect(0, 0, 120, 100));
+  cv::flip(corner.clone(), corner, 0);
+  pair.cur.Build();
+  for (const int count : {0, 2, 3, 4}) {
+    const Correspondences matches =
+        RandomWorld(1).Matches(count, 0.0, pair.cur_from_prev);
+    FramePair data = pair.data();
+    data.matches = &matches;
+    Estimator estimator(
+        DirectEstimatorOptions(),
+        JoinCosts(MakeRobustCosts("mahalanobis_point", "tukey"),
+                  MakeDirectCosts("photometric+inverse_depth", "tukey")));
+    MotionEstimate estimate;
+    estimator.Estimate(data, Rigid3d(), &estimate);
+    EXPECT_TRUE(estimate.ok()) << count << " matches: " << estimate.reason;
   }
 }
 
