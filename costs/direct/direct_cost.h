@@ -63,17 +63,18 @@ struct LookUpKernel {
     std::memcpy(&tile->z[i], &place.z, sizeof(D));
   }
 
-  // Points that are not read keep valid numbers from an earlier point.
+  // Points that are not read keep valid numbers from an earlier point. The mask
+  // comes last: it is for pixels within the image only.
   [[gnu::always_inline]] static void Read(const DirectInput& input, int size,
                                           Tile* tile) {
     for (int i = 0; i < size; ++i) {
       tile->is_read[i] =
           tile->z[i] > DirectInput::kMinDepth &&
+          Residual::Read(input, tile->u[i], tile->v[i], kTile,
+                         &tile->samples[0][i]) &&
           !(input.moving != nullptr &&
             input.moving->Contains(input.px_to_full * tile->u[i],
-                                   input.px_to_full * tile->v[i])) &&
-          Residual::Read(input, tile->u[i], tile->v[i], kTile,
-                         &tile->samples[0][i]);
+                                   input.px_to_full * tile->v[i]));
     }
   }
 

@@ -83,6 +83,23 @@ TEST_P(DirectCostTest, WhatIsOutOfViewTakesNoPart) {
   EXPECT_EQ(turned(180.0), 0u) << "points behind the camera";
 }
 
+// A lens sees a point beside the camera at a pixel that fits into no integer:
+// the sanitizers of scripts/check would tell.
+TEST_P(DirectCostTest, MasksAreAskedWithinTheImageOnly) {
+  DirectPair pair(SyntheticDataset(SmallImages(/*is_distorted=*/true)), 10, 12);
+  CellMask nothing;
+  nothing.columns = pair.cur.camera.width / CellMask::kCellPx + 1;
+  for (int degrees = 0; degrees < 90; ++degrees) {
+    const Rigid3d turn(Eigen::Quaterniond(Eigen::AngleAxisd(
+                           degrees * M_PI / 180.0, Eigen::Vector3d::UnitY())),
+                       Eigen::Vector3d::Zero());
+    pair.cur.view.moving = nullptr;
+    const size_t unmasked = Count(pair, turn * pair.cur_from_prev);
+    pair.cur.view.moving = &nothing;
+    EXPECT_EQ(Count(pair, turn * pair.cur_from_prev), unmasked) << degrees;
+  }
+}
+
 TEST_P(DirectCostTest, DepthHolesOfThePreviousFrameGiveNoPoints) {
   for (const uint16_t hole : {uint16_t{0}, Frame::kNoDepth}) {
     DirectPair pair = SmallPair();
