@@ -18,6 +18,23 @@ Eigen::Vector3i CornerAt(int index) {
   return {index >> 2 & 1, index >> 1 & 1, index & 1};
 }
 
+void DropUnusedVertices(TriangleMesh* mesh) {
+  std::vector<int> places(mesh->vertices.size(), kNone);
+  for (const Eigen::Vector3i& triangle : mesh->triangles) {
+    for (const int vertex : triangle) places[vertex] = 0;
+  }
+  int count = 0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (places[i] == kNone) continue;
+    mesh->vertices[count] = mesh->vertices[i];
+    places[i] = count++;
+  }
+  mesh->vertices.resize(count);
+  for (Eigen::Vector3i& triangle : mesh->triangles) {
+    for (int& vertex : triangle) vertex = places[vertex];
+  }
+}
+
 class Mesher {
  public:
   Mesher(const TsdfVolume& volume, double voxel_size, float min_weight)
@@ -29,7 +46,8 @@ class Mesher {
   TriangleMesh Mesh() {
     for (int i = 0; i < volume_.size(); ++i) AddVertices(i);
     for (int i = 0; i < volume_.size(); ++i) AddTriangles(i);
-    DropUnusedVertices();
+    // At the ends of the surface, some voxels around edges are unknown.
+    DropUnusedVertices(&mesh_);
     return std::move(mesh_);
   }
 
@@ -151,24 +169,6 @@ class Mesher {
     }
   }
 
-  // At the ends of the surface, some voxels around edges are unknown.
-  void DropUnusedVertices() {
-    std::vector<int> places(mesh_.vertices.size(), kNone);
-    for (const Eigen::Vector3i& triangle : mesh_.triangles) {
-      for (const int vertex : triangle) places[vertex] = 0;
-    }
-    int count = 0;
-    for (size_t i = 0; i < places.size(); ++i) {
-      if (places[i] == kNone) continue;
-      mesh_.vertices[count] = mesh_.vertices[i];
-      places[i] = count++;
-    }
-    mesh_.vertices.resize(count);
-    for (Eigen::Vector3i& triangle : mesh_.triangles) {
-      for (int& vertex : triangle) vertex = places[vertex];
-    }
-  }
-
   void AddQuad(std::array<int, 4> corners, bool is_seen_from_end) {
     if (*std::min_element(corners.begin(), corners.end()) == kNone) return;
     if (!is_seen_from_end) std::swap(corners[1], corners[3]);
@@ -235,6 +235,8 @@ TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
                   triangles.end());
   for (const auto& t : triangles)
     coarse.triangles.emplace_back(t[0], t[1], t[2]);
+  // Pieces of the surface within one or two cubes have no triangle left.
+  DropUnusedVertices(&coarse);
   return coarse;
 }
 

@@ -83,5 +83,26 @@ TEST(SurfaceMeshTest, EndsWhereNothingIsKnown) {
   EXPECT_TRUE(SurfaceMesh(TsdfVolume(), kVoxel, 1.0F).vertices.empty());
 }
 
+// A piece of the surface that fits into one cube leaves no vertex behind.
+TEST(SurfaceMeshTest, ThinHasOnlyVerticesOfTriangles) {
+  TriangleMesh mesh = SurfaceMesh(
+      Ball([](const Eigen::Vector3d&) { return true; }), kVoxel, 0.5F);
+  const int first = static_cast<int>(mesh.vertices.size());
+  constexpr float kSide = 1e-4F;  // m
+  for (const auto& corner :
+       {Eigen::Vector3f(0, 0, 0), {kSide, 0, 0}, {0, kSide, 0}}) {
+    mesh.vertices.push_back({Eigen::Vector3f(1.01F, 1.01F, 1.01F) + corner});
+  }
+  mesh.triangles.emplace_back(first, first + 1, first + 2);
+  const TriangleMesh thin =
+      SimplifyMesh(mesh, kVoxel, mesh.triangles.size() / 4);
+  ASSERT_GT(thin.triangles.size(), 100u);
+  std::set<int> used;
+  for (const Eigen::Vector3i& triangle : thin.triangles) {
+    used.insert(triangle.begin(), triangle.end());
+  }
+  EXPECT_EQ(used.size(), thin.vertices.size());
+}
+
 }  // namespace
 }  // namespace rgbd_pose
