@@ -25,9 +25,10 @@ DEFINE_int32(threads, 0,
              "threads that read images ahead and track; 0: one for each core; "
              "the result does not depend on it");
 DEFINE_bool(report, true, "write OUTPUT/report.html");
-DEFINE_bool(finish_on_signal, true,
-            "on SIGINT (Ctrl-C) or SIGTERM stop early and keep the results; a "
-            "second signal ends the program at once");
+DEFINE_bool(
+    finish_on_signal, true,
+    "on SIGINT (Ctrl-C), SIGTERM or SIGHUP (a closed terminal) stop early "
+    "and keep the results; a second Ctrl-C ends the program at once");
 
 namespace rgbd_pose {
 namespace {

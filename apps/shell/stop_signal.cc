@@ -13,29 +13,34 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kSignals[] = {SIGINT, SIGTERM};
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kNumSignals = sizeof(kSignals) / sizeof(kSignals[0]);
 
 // The signal handlers before an object replaced them.
 class Handlers {
  public:
   // Sets a handler for the signals that are not ignored.
   void Replace(void (*handler)(int)) {
-    for (int i = 0; i < 2; ++i) sigaction(kSignals[i], nullptr, &before_[i]);
+    for (int i = 0; i < kNumSignals; ++i) {
+      sigaction(kSignals[i], nullptr, &before_[i]);
+    }
     struct sigaction action = {};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < kNumSignals; ++i) {
       if (before_[i].sa_handler == SIG_IGN) continue;
       sigaction(kSignals[i], &action, nullptr);
     }
   }
   void Restore() const {
-    for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before_[i], nullptr);
+    for (int i = 0; i < kNumSignals; ++i) {
+      sigaction(kSignals[i], &before_[i], nullptr);
+    }
   }
 
  private:
-  struct sigaction before_[2] = {};
+  struct sigaction before_[kNumSignals] = {};
 };
 
 // The state of CleanEnd, for its signal handler.
@@ -87,6 +92,8 @@ StopSignal::StopSignal(bool is_used) : is_used_(is_used) {
   before_stop.Replace([](int signal) {
     came = signal;
     before_stop.Restore();  // a second one ends the program
+    // A terminal that is closed sends it more than once.
+    if (signal == SIGHUP) std::signal(SIGHUP, SIG_IGN);
   });
 }
 
@@ -95,7 +102,16 @@ StopSignal::~StopSignal() {
 }
 
 std::string StopSignal::name() const {
-  return came == SIGINT ? "SIGINT" : came == SIGTERM ? "SIGTERM" : "";
+  switch (came) {
+    case SIGINT:
+      return "SIGINT";
+    case SIGTERM:
+      return "SIGTERM";
+    case SIGHUP:
+      return "SIGHUP";
+    default:
+      return "";
+  }
 }
 
 }  // namespace rgbd_pose

@@ -5,9 +5,10 @@
 
 namespace rgbd_pose {
 
-// While this object lives, SIGINT (Ctrl-C) and SIGTERM end the program as
-// usual, but what it has not finished in folders is removed before. Ignored
-// signals stay ignored. Only one object may exist at a time.
+// While this object lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP (its terminal is
+// closed) end the program as usual, but what it has not finished in folders is
+// removed before. Ignored signals stay ignored. Only one object may exist at a
+// time.
 class CleanEnd {
  public:
   CleanEnd();
@@ -21,8 +22,8 @@ class CleanEnd {
 };
 
 // While this object lives, these signals ask the program to stop early and to
-// keep its results; a second signal ends it at once. Ignored signals stay
-// ignored. Only one object may exist at a time.
+// keep its results; a second signal, but for SIGHUP, ends it at once. Ignored
+// signals stay ignored. Only one object may exist at a time.
 class StopSignal {
  public:
   // With `is_used` false, signals end the program as before.

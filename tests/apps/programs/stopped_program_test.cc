@@ -77,7 +77,7 @@ class StoppedProgramTest : public ProgramTest {
 };
 
 TEST_F(StoppedProgramTest, ASignalEndsItWithWhatThereIs) {
-  for (const std::string name : {"INT", "TERM"}) {
+  for (const std::string name : {"INT", "TERM", "HUP"}) {
     const RunResult run = ConvertUntil("kill -" + name + " $id");
     EXPECT_EQ(run.exit_code, 6) << run.err;
     EXPECT_THAT(run.err, HasSubstr("stopped after 5 frames (SIG" + name + ")"));
@@ -111,7 +111,7 @@ TEST_F(StoppedProgramTest, OneThatEndsAtOnceLeavesNothingUnfinished) {
   for (const std::string& program :
        {RGBD_CALIBRATE + words,
         RGBD_ODOMETRY " --nofinish_on_signal" + words}) {
-    for (const std::string name : {"INT", "TERM"}) {
+    for (const std::string name : {"INT", "TERM", "HUP"}) {
       const RunResult run = RunUntil("[ -d '" + unfinished + "' ]",
                                      "kill -" + name + " $id; exit", program);
       EXPECT_EQ(run.exit_code, -1) << "not ended by the signal";

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "core/util/input_error.h"
 #include "tests/support/temp_folder.h"
@@ -110,10 +111,12 @@ TEST_F(RunTrackingTest, GoesToTheEnd) {
 }
 
 TEST_F(RunTrackingTest, ASignalEndsItWithWhatThereIs) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const auto& [signal, name] : {std::pair(SIGINT, "SIGINT"),
+                                     {SIGTERM, "SIGTERM"},
+                                     {SIGHUP, "SIGHUP"}}) {
     std::signal(signal, SIG_DFL);  // a test in the background ignores SIGINT
-    EXPECT_EQ(Track(true, [signal] { std::raise(signal); }),
-              signal == SIGINT ? "SIGINT" : "SIGTERM");
+    const int number = signal;
+    EXPECT_EQ(Track(true, [number] { std::raise(number); }), name);
     EXPECT_GE(frames_, kEventAt);
     EXPECT_LT(frames_, kSourceFrames);
   }
@@ -133,6 +136,15 @@ TEST_F(RunTrackingTest, ASecondSignalEndsTheProgram) {
   };
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(Track(true, twice), testing::KilledBySignal(SIGTERM), "");
+}
+
+TEST_F(RunTrackingTest, AClosedTerminalMaySayItTwice) {
+  std::signal(SIGHUP, SIG_DFL);
+  const auto twice = [] {
+    std::raise(SIGHUP);
+    std::raise(SIGHUP);
+  };
+  EXPECT_EQ(Track(true, twice), "SIGHUP");
 }
 
 TEST_F(RunTrackingTest, WhatASourceGaveIsKeptIfItFails) {
