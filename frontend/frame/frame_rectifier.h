@@ -23,7 +23,8 @@ class FrameRectifier {
   // or nothing has to be corrected, the frame is returned with shared images.
   Frame Rectify(const Frame& frame);
 
-  // The same, seen from a pose nearby.
+  // The same, seen from a pose nearby. A frame in which nothing has to be
+  // corrected stays where it is.
   Frame Rectify(const Frame& frame, const Rigid3d& target_from_stamp);
 
  private:
