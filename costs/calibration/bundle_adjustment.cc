@@ -56,8 +56,7 @@ class AdjustmentProblem {
   AdjustmentProblem(const CalibrationViews& views,
                     const CalibrationOrigin& origin, CalibrationState* state)
       : views_(views),
-        model_(std::make_shared<CalibrationModel>(
-            CalibrationModel{views.camera, origin})),
+        model_(ModelOf(views, origin)),
         state_(*state),
         y_(origin.NumbersOf(state->theta)),
         loss_(kLandmarkLossWidth),
@@ -183,8 +182,7 @@ CalibrationOrigin BundleAdjustment::OriginOf(
 
 void BundleAdjustment::MeasureScales(CalibrationState* state) const {
   state->pixel_scale = state->depth_scale = 1.0;
-  const auto model =
-      std::make_shared<CalibrationModel>(CalibrationModel{views_.camera, {}});
+  const auto model = ModelOf(views_);
   const std::vector<PoseOf<double>> poses = PosesOf(*state);
   const CalibrationVector& theta = state->theta;
   std::vector<double> pixels, depths;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/factors/blocks.h"
@@ -63,6 +64,14 @@ struct CalibrationState {
   double pixel_scale = 1.0;
   double depth_scale = 1.0;
 };
+
+// What the factors of a calibration share. By default the numbers of their
+// CalibrationBlock are theta.
+inline std::shared_ptr<const CalibrationModel> ModelOf(
+    const CalibrationViews& views, const CalibrationOrigin& origin = {}) {
+  return std::make_shared<CalibrationModel>(
+      CalibrationModel{views.camera, origin});
+}
 
 // The poses of a state's keyframes, as factors read them.
 inline std::vector<PoseOf<double>> PosesOf(const CalibrationState& state) {

@@ -1,6 +1,5 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <memory>
 #include <type_traits>
 #include <vector>
 
@@ -137,8 +136,7 @@ struct DistanceEquation {
 std::vector<DistanceEquation> DistanceEquations(const CalibrationViews& views,
                                                 const CalibrationOrigin& origin,
                                                 const CalibrationState& state) {
-  const auto model = std::make_shared<CalibrationModel>(
-      CalibrationModel{views.camera, origin});
+  const auto model = ModelOf(views, origin);
   const CalibrationVector y = origin.NumbersOf(state.theta);
   std::vector<DistanceEquation> equations;
   for (const KnownDistance& known : views.distances) {
@@ -215,8 +213,7 @@ ReducedCameraSystem MakeReducedCameraSystem(const CalibrationViews& views,
                                             bool training_only,
                                             const CalibrationOrigin& origin,
                                             const CalibrationState& state) {
-  const auto model = std::make_shared<CalibrationModel>(
-      CalibrationModel{views.camera, origin});
+  const auto model = ModelOf(views, origin);
   const std::vector<PoseOf<double>> poses = PosesOf(state);
   const CalibrationVector y = origin.NumbersOf(state.theta);
   const int num_poses = static_cast<int>(poses.size());

@@ -16,7 +16,8 @@
 // Factors that compare what landmark_model.h predicts with the pixels and
 // inverse depths that the sensor measures. They estimate the camera with the
 // poses and landmarks; LandmarkFactor (costs/factors/landmark.h) takes the
-// camera as known.
+// camera as known and rejects a landmark behind the view. These do not, so that
+// one wrong landmark does not end a calibration: give them a loss.
 
 namespace rgbd_pose {
 
@@ -56,17 +57,17 @@ struct LandmarkPixelFactor {
     const CalibratedLens<double> lens(theta.data(), model->camera);
     const InViewDerivatives moved(lens, anchor, view, inverse_depth[0], data);
     const double z = 1.0 / moved.Y[2];
-    const double x = moved.Y[0] * z, y_z = moved.Y[1] * z;
-    const Eigen::Vector2d seen = lens.Distort(x, y_z);
+    const double a = moved.Y[0] * z, b = moved.Y[1] * z;
+    const Eigen::Vector2d seen = lens.Distort(a, b);
     const Eigen::Vector2d pixel = lens.ToPixel(seen);
     const double w = data.inverse_sigma_px;
     r[0] = (pixel[0] - data.u) * w;
     r[1] = (pixel[1] - data.v) * w;
     Eigen::Matrix<double, 2, 3> project;
-    project << z, 0.0, -x * z, 0.0, z, -y_z * z;
+    project << z, 0.0, -a * z, 0.0, z, -b * z;
     const Eigen::Vector2d scale(w * theta[kFx], w * theta[kFy]);
     const Eigen::Matrix<double, 2, 3> by_point =
-        scale.asDiagonal() * (DistortDerivative(lens, x, y_z) * project);
+        scale.asDiagonal() * (DistortDerivative(lens, a, b) * project);
     *by_anchor = by_point * moved.by_anchor;
     *by_view = by_point * moved.by_view;
     *by_inverse_depth = by_point * moved.by_inverse_depth;
@@ -78,7 +79,7 @@ struct LandmarkPixelFactor {
     (*by_y)(0, kCx) += w;
     (*by_y)(1, kCy) += w;
     by_y->middleCols<kDistortionSize>(kK1) +=
-        scale.asDiagonal() * DistortByCoefficients(lens, x, y_z);
+        scale.asDiagonal() * DistortByCoefficients(lens, a, b);
     *by_y *= model->origin.width.asDiagonal();
     return true;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -21,8 +20,7 @@ double CostOf(const CalibrationViews& views, const LandmarkView& view,
               const CalibrationState& scales, Eigen::Vector2d* error) {
   const Landmark& landmark = views.landmarks[i];
   const Eigen::Matrix<double, 1, 1> d(state.inverse_depths[i]);
-  const auto model =
-      std::make_shared<CalibrationModel>(CalibrationModel{views.camera, {}});
+  const auto model = ModelOf(views);
   const LandmarkData data = DataOf(views, landmark, view, scales);
   const PoseOf<double>& anchor = poses[landmark.anchor];
   const PoseOf<double>& there = poses[view.keyframe];

@@ -1,7 +1,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "core/factors/blocks.h"
 #include "core/util/quantile.h"
@@ -27,8 +26,7 @@ void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
   const PoseOf<double>& anchor = poses[landmark.anchor];
   const Eigen::Matrix<double, 1, 1> d(state.inverse_depths[i]);
   const CalibrationVector& theta = state.theta;
-  const auto model =
-      std::make_shared<CalibrationModel>(CalibrationModel{views.camera, {}});
+  const auto model = ModelOf(views);
   const CalibratedLens<double> lens(theta.data(), views.camera);
   const size_t first = samples->size();
   double information = 0.0;

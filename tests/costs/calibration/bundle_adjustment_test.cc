@@ -67,8 +67,7 @@ struct World {
 
   // Measurements are set from the residuals of measurements of zero.
   void SeeExactly() {
-    const auto model =
-        std::make_shared<CalibrationModel>(CalibrationModel{views.camera, {}});
+    const auto model = ModelOf(views);
     const auto poses = PosesOf(truth);
     double r[2];
     for (size_t i = 0; i < views.landmarks.size(); ++i) {

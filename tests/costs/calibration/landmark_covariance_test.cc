@@ -42,8 +42,7 @@ struct Problem {
   CalibrationOrigin origin;
 
   std::shared_ptr<const CalibrationModel> Model() const {
-    return std::make_shared<CalibrationModel>(
-        CalibrationModel{views.camera, origin});
+    return ModelOf(views, origin);
   }
 
   // Each keyframe is the anchor of some landmarks, or `anchor` is of all.
