@@ -98,7 +98,7 @@ ExportedViews WriteViewImages(const FinishedRun& run,
 OutputFolder::OutputFolder(const std::string& path, bool overwrite)
     : path_((fs::weakly_canonical(path) / "").parent_path()),
       replaced_dir_(path_.string() + ".replaced_by_export"),
-      staging_(path_.string() + ".partial", "--output: " + path) {
+      staging_(path_.string() + ".rgbd_export.partial", "--output: " + path) {
   std::error_code error;
   // A killed export leaves the old folder under this name: it returns unless
   // there is a new one.

@@ -215,8 +215,8 @@ WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                        "or choose another");
     }
     fs::remove(target);  // fails now and not at the end, such as a mount point
-    const LockedFolder partial(target.string() + ".partial", folder + ":",
-                               kList);
+    const LockedFolder partial(target.string() + ".rgbd_convert.partial",
+                               folder + ":", kList);
     WrittenSequence written = WriteAll(source, partial.path(), options);
     fs::rename(partial.path(), target);
     return written;

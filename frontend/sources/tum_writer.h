@@ -39,12 +39,12 @@ struct WrittenSequence {
 // Writes all frames of a source in the layout of the TUM RGB-D benchmark (grey
 // if the source keeps no colour), with groundtruth.txt if there is a true path,
 // with imu.csv and imu.yaml if there is an inertial sensor, and camera.yaml in
-// ORB-SLAM2's format. The sequence exists as a whole or not
-// at all: it is written to FOLDER.partial, which is renamed at the end. There
-// it can be read after each frame, so a camera's recording outlives a killed
+// ORB-SLAM2's format. The sequence exists as a whole or not at all: it is
+// written to FOLDER.rgbd_convert.partial, which is renamed at the end. There it
+// can be read after each frame, so a camera's recording outlives a killed
 // program, and is not overwritten. Throws InputError if `folder` is a file, is
-// not empty or cannot be written, if FOLDER.partial holds such a recording, and
-// for an unreadable frame.
+// not empty or cannot be written, if a killed program left such a recording,
+// and for an unreadable frame.
 WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                                  const TumWriterOptions& options = {});
 

@@ -240,7 +240,10 @@ def check_lenses(program, work):
 
 def check_overwriting(export, folder):
     """Only what an export wrote is replaced."""
+    beside = folder + '.partial'
+    os.mkdir(beside)
     export('kitti', folder, '--overwrite')
+    check(os.path.exists(beside), 'a folder of the user is lost')
     mine = os.path.join(folder, 'mine.txt')
     with open(mine, 'w', encoding='utf-8') as file:
         file.write('mine')

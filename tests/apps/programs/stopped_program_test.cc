@@ -55,7 +55,7 @@ class StoppedProgramTest : public ProgramTest {
 
   // When all frames before the stalled one are written.
   RunResult ConvertUntil(const std::string& signal) const {
-    return RunUntil("[ $(cat '" + folder_ / "out.partial/rgb.txt" +
+    return RunUntil("[ $(cat '" + folder_ / "out.rgbd_convert.partial/rgb.txt" +
                         "' | wc -l) -ge " + std::to_string(kStopAt) + " ]",
                     signal, Convert());
   }
@@ -81,7 +81,7 @@ TEST_F(StoppedProgramTest, ASignalEndsItWithWhatThereIs) {
     const RunResult run = ConvertUntil("kill -" + name + " $id");
     EXPECT_EQ(run.exit_code, 6) << run.err;
     EXPECT_THAT(run.err, HasSubstr("stopped after 5 frames (SIG" + name + ")"));
-    EXPECT_FALSE(fs::exists(folder_ / "out.partial"));
+    EXPECT_FALSE(fs::exists(folder_ / "out.rgbd_convert.partial"));
     EXPECT_TRUE(fs::exists(folder_ / "out/groundtruth.txt"));
     EXPECT_THAT(ReadBack("out"), HasSubstr("frames      5, all readable"));
 
@@ -99,8 +99,10 @@ TEST_F(StoppedProgramTest, WhatAKilledOneRecordedIsNotOverwritten) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   const RunResult next = Run(Convert());
   EXPECT_EQ(next.exit_code, 2);
-  EXPECT_THAT(next.err, HasSubstr("out.partial holds what a killed program"));
-  fs::rename(folder_ / "out.partial", folder_ / "kept");
+  EXPECT_THAT(
+      next.err,
+      HasSubstr("out.rgbd_convert.partial holds what a killed program"));
+  fs::rename(folder_ / "out.rgbd_convert.partial", folder_ / "kept");
   EXPECT_THAT(ReadBack("kept"), HasSubstr("frames      4, all readable"));
 }
 

@@ -274,11 +274,13 @@ TEST_F(TumWriterTest, IsNotStoppedAtItsLastFrame) {
 }
 
 TEST_F(TumWriterTest, IsUndisturbedByWhatAnEarlierRunLeft) {
-  const std::string left = folder_ + ".partial";
-  parent_.Write("new/sequence.partial/old.txt", "text");
+  const std::string left = folder_ + ".rgbd_convert.partial";
+  parent_.Write("new/sequence.rgbd_convert.partial/old.txt", "text");
+  parent_.Write("new/sequence.partial/mine.txt", "a user's");
   Write(folder_);
   EXPECT_FALSE(fs::exists(folder_ + "/old.txt"));
   EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(folder_ + ".partial/mine.txt"));
 }
 
 }  // namespace
