@@ -236,10 +236,11 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
          return ReadPoseTable(folder, "traj_w_c.txt", 0, 1);
        }},
       {"frame_pairs",
-       "images beside each other (frame_00000_rgb.png, frame_00000_depth.png)",
+       "images beside each other (frame_00000_rgb.png, frame_00000_depth.png, "
+       "or 00000-color.png, 00000-depth.png)",
        {"frame_*_rgb.png", "frame_*_rgb.jpg", "frame_*_color.png",
-        "frame_*_color.jpg"},
-       {"frame_*_depth.png"},
+        "frame_*_color.jpg", "*-color.png", "*-color.jpg"},
+       {"frame_*_depth.png", "*-depth.png"},
        1000.0,
        [](const NumberedFolder& folder) {
          return ReadPoseTable(folder, "trajectory.log", 3, 4);

@@ -241,5 +241,16 @@ TEST_F(NumberedLayoutsTest, ReadsImagesBesideEachOther) {
   EXPECT_EQ(source->camera().camera.width, kWidth);
 }
 
+// As RGB-D Scenes v2 names them.
+TEST_F(NumberedLayoutsTest, ReadsNumbersBeforeTheKindOfImage) {
+  for (int k = 0; k < kFrames; ++k) {
+    const std::string number = "0000" + std::to_string(k);
+    Write(number + "-color.png", ColorImage(k));
+    Write(number + "-depth.png", DepthImage(k));
+  }
+  WriteText("camera-intrinsics.txt", "30 0 15.5\n0 31 11.5\n0 0 1\n");
+  ExpectRead("frame_pairs", Options(), 1000.0);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
