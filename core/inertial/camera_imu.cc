@@ -24,11 +24,31 @@ constexpr double kMostOfOne = 30.0;
 constexpr size_t kSameInARow = 3;
 constexpr double kFastRate = 1.0;
 
+// The samples as they were measured from which a covered interval is
+// interpolated, and one more on either side unless there is a gap.
+std::vector<ImuSample> SamplesAround(const ImuBuffer& buffer, double from,
+                                     double to) {
+  const std::vector<ImuSample>& all = buffer.samples();
+  auto first = std::upper_bound(all.begin(), all.end(), from,
+                                [](double time, const ImuSample& sample) {
+                                  return time < sample.stamp;
+                                }) -
+               1;
+  auto last = std::lower_bound(
+      first, all.end(), to,
+      [](const ImuSample& sample, double time) { return sample.stamp < time; });
+  const auto are_near = [](const ImuSample& a, const ImuSample& b) {
+    return b.stamp - a.stamp <= ImuBuffer::kMaxGap;
+  };
+  if (first != all.begin() && are_near(first[-1], *first)) --first;
+  if (last + 1 != all.end() && are_near(*last, last[1])) ++last;
+  return {first, last + 1};
+}
+
 bool IsSaturated(const std::vector<ImuSample>& samples) {
   for (int axis = 0; axis < 3; ++axis) {
     size_t same = 1;
-    // The first and the last sample are interpolated.
-    for (size_t i = 2; i + 1 < samples.size(); ++i) {
+    for (size_t i = 1; i < samples.size(); ++i) {
       const double rate = samples[i].gyro[axis];
       same = rate == samples[i - 1].gyro[axis] ? same + 1 : 1;
       if (same >= kSameInARow && std::abs(rate) >= kFastRate) return true;
@@ -43,7 +63,6 @@ bool IsSaturated(const std::vector<ImuSample>& samples) {
 constexpr double kSpike = 3.0;
 
 bool HasSpike(const std::vector<ImuSample>& samples) {
-  // The first and the last sample are interpolated.
   for (size_t i = 1; i + 1 < samples.size(); ++i) {
     const ImuSample& before = samples[i - 1];
     const ImuSample& after = samples[i + 1];
@@ -101,12 +120,14 @@ std::optional<PreintegratedMotion> CameraImu::Motion(double from,
                                                      double to) const {
   if (!(from < to)) return std::nullopt;
   if (!buffer_.Covers(from + delay(), to + delay())) return std::nullopt;
-  const std::vector<ImuSample> samples =
-      buffer_.Between(from + delay(), to + delay());
-  if (IsSaturated(samples) || HasSpike(samples)) return std::nullopt;
+  // Interpolated samples would hide faults next to the ends.
+  const std::vector<ImuSample> measured =
+      SamplesAround(buffer_, from + delay(), to + delay());
+  if (IsSaturated(measured) || HasSpike(measured)) return std::nullopt;
   ImuBiasVector bias = ImuBiasVector::Zero();
   bias.head<3>() = state_.head<3>();
-  PreintegratedMotion motion = Preintegrate(samples, bias, noise_);
+  PreintegratedMotion motion =
+      Preintegrate(buffer_.Between(from + delay(), to + delay()), bias, noise_);
   const Eigen::Quaterniond turn = cam_from_imu_turn();
   const Eigen::Matrix3d R = turn.toRotationMatrix();
   motion.start_from_end = turn * motion.start_from_end * turn.conjugate();

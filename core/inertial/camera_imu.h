@@ -66,7 +66,8 @@ class CameraImu {
   // The motion between two times of the camera's clock, in the axes of the
   // camera at the position of the sensor, less the bias of the gyroscope; both
   // biases are in the axes of the sensor. Nothing if samples are missing, at
-  // the end of the gyroscope's range, or if one of them is a spike.
+  // the end of the gyroscope's range, or if one of them, or the one beside
+  // them, is a spike.
   std::optional<PreintegratedMotion> Motion(double from, double to) const;
 
   // The turn between two times, and the rate. Nothing where Motion has nothing.

@@ -235,6 +235,58 @@ TEST(CameraImuTest, SaysNothingWhereASampleIsASpike) {
   EXPECT_LT(missing, 10);
 }
 
+// The rows of a frame take as long as one or two samples: interpolated ones
+// would hide a spike beside them.
+TEST(CameraImuTest, NoIntervalIsTooShortToShowASpike) {
+  constexpr double kStep = 0.01, kSpikeAt = 1.0;  // s
+  constexpr double kRate = 0.5, kSpike = 5.0;     // rad/s
+  ImuSensor sensor;
+  sensor.calibration.cam_from_imu = Rigid3d();
+  sensor.calibration.delay_s = 0.0;
+  CameraImu imu(sensor);
+  std::vector<ImuSample> samples;
+  for (int i = 0; i < 200; ++i) {
+    samples.push_back(
+        {kStep * i, kRate * Eigen::Vector3d::UnitX(), {0, 0, 9.81}});
+  }
+  samples[100].gyro.x() += kSpike;
+  imu.Add(samples);
+  for (const double seconds : {0.0025, 0.005, 0.01, 0.033}) {
+    for (double from = 0.9; from < 1.1; from += 0.0007) {
+      const std::optional<CameraRate> rate = imu.Rate(from, from + seconds);
+      const bool is_touched =
+          from < kSpikeAt + kStep && from + seconds > kSpikeAt - kStep;
+      EXPECT_EQ(rate.has_value(), !is_touched) << from << " " << seconds;
+      if (rate.has_value()) {
+        EXPECT_NEAR(rate->angular.x(), kRate, 1e-9) << from;
+      }
+    }
+  }
+}
+
+// A hand that shakes, where samples were lost: the first one after the gap has
+// no neighbour before it.
+TEST(CameraImuTest, FastShakingBesideAGapIsNoSpike) {
+  constexpr double kStep = 0.02, kGapFrom = 0.5, kGapTo = 0.7;  // s
+  constexpr double kRate = 10.0, kHertz = 5.0;                  // rad/s
+  ImuSensor sensor;
+  sensor.calibration.cam_from_imu = Rigid3d();
+  sensor.calibration.delay_s = 0.0;
+  CameraImu imu(sensor);
+  std::vector<ImuSample> samples;
+  for (int i = 0; i < 100; ++i) {
+    const double t = kStep * i;
+    if (t > kGapFrom && t < kGapTo) continue;
+    const double rate = kRate * std::sin(2.0 * M_PI * kHertz * t);
+    samples.push_back({t, rate * Eigen::Vector3d::UnitX(), {0, 0, 9.81}});
+  }
+  imu.Add(samples);
+  EXPECT_FALSE(imu.Turn(0.4, 0.6).has_value());
+  for (double from = 0.71; from < 1.8; from += 0.013) {
+    EXPECT_TRUE(imu.Turn(from, from + 0.03).has_value()) << from;
+  }
+}
+
 TEST(CameraImuTest, SaysWhichSamplesAreMissing) {
   CameraWithImu world;
   CameraImu imu({world.truth, true});
