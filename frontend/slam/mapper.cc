@@ -13,12 +13,13 @@ constexpr int kSampleStepPx = 40;
 // Maximum flow between a redundant view and the view that replaces it.
 constexpr double kRedundantFlowPx = 30.0;
 
-// A covariance of [omega C] in other axes.
-MotionMatrix InAxes(const Eigen::Quaterniond& rotation,
+// A covariance of [omega C] with each of them in other axes.
+MotionMatrix InAxes(const Eigen::Quaterniond& of_omega,
+                    const Eigen::Quaterniond& of_C,
                     const MotionMatrix& covariance) {
   MotionMatrix turned = MotionMatrix::Zero();
-  turned.topLeftCorner<3, 3>() = rotation.toRotationMatrix();
-  turned.bottomRightCorner<3, 3>() = turned.topLeftCorner<3, 3>();
+  turned.topLeftCorner<3, 3>() = of_omega.toRotationMatrix();
+  turned.bottomRightCorner<3, 3>() = of_C.toRotationMatrix();
   return turned * covariance * turned.transpose();
 }
 
@@ -239,7 +240,10 @@ std::vector<MotionMatrix> Mapper::Covariances() const {
   for (int at = 0; at < graph_.size(); ++at) {
     if (graph_.IsRemoved(at)) continue;
     if (!graph_.IsFixed(at)) {
-      *covariance += keyframes_[at].timing_covariance;
+      // The error of its own timing moves it along its own axes.
+      *covariance +=
+          InAxes(Eigen::Quaterniond::Identity(), graph_.pose(at).rotation,
+                 keyframes_[at].timing_covariance);
       const int first = graph_.FirstOf(at);
       if (!graph_.IsHeld(first)) {
         // An error of the first keyframe turns and moves all others, about
@@ -249,7 +253,8 @@ std::vector<MotionMatrix> Mapper::Covariances() const {
                                      start.translation);
         *covariance = ComposedCovariance(
             graph_.pose(at).Inverse() * map_from_start, *covariance, Rigid3d(),
-            InAxes(start.rotation, keyframes_[first].timing_covariance));
+            InAxes(start.rotation, start.rotation,
+                   keyframes_[first].timing_covariance));
       }
     }
     ++covariance;

@@ -59,6 +59,34 @@ TEST(MapperTest, TrackedEdgesJoinSegments) {
   EXPECT_NEAR(map.keyframes[0].world_from_cam.translation.z(), -4.0, 1e-9);
 }
 
+// Its timing displaces a keyframe along its own x axis, which is the z axis of
+// the world after a quarter of a turn about y.
+TEST(MapperTest, CovariancesHaveTheTimingOfAKeyframeInTheWorld) {
+  constexpr double kVariance = 1e-4;  // rad^2 and m^2
+  const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
+  const Rigid3d turned =
+      Rigid3d::FromRotationVector({0.0, M_PI / 2.0, 0.0}, {1.0, 0.0, 0.0});
+  std::vector<MotionMatrix> covariances;
+  for (const double variance : {0.0, kVariance}) {
+    Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), {camera}));
+    mapper.Add(Noise(3), {});
+    RelativePose edge;
+    edge.ref = 3;
+    edge.cur_from_ref = turned.Inverse();
+    edge.covariance = 1e-6 * MotionMatrix::Identity();
+    Keyframe keyframe = Noise(7);
+    keyframe.timing_covariance(0, 0) = keyframe.timing_covariance(3, 3) =
+        variance;
+    mapper.Add(keyframe, {edge});
+    mapper.Finish();
+    covariances.push_back(mapper.Covariances().at(1));
+  }
+  MotionMatrix expected = MotionMatrix::Zero();
+  expected(0, 0) = expected(5, 5) = kVariance;
+  EXPECT_TRUE((covariances[1] - covariances[0]).isApprox(expected, 1e-6))
+      << covariances[1] - covariances[0];
+}
+
 TEST(MapperTest, AMapKeepsWhichWayIsUp) {
   KeyframeMap map = NoiseMap(5, 0);
   ASSERT_EQ(map.ups.size(), 2u);
