@@ -1,6 +1,7 @@
 #include "frontend/slam/slam.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -8,6 +9,26 @@
 #include "core/util/stage_timer.h"
 
 namespace rgbd_pose {
+namespace {
+
+// What has to be added to a number of a map's keyframes so that none is below
+// `first`, as all others are.
+int OffsetOf(const KeyframeMap& map, int Keyframe::*number, int first) {
+  constexpr int64_t kMost = 1000000000;
+  int64_t least = 0, most = 0;
+  for (const Keyframe& keyframe : map.keyframes) {
+    least = std::min<int64_t>(least, keyframe.*number);
+    most = std::max<int64_t>(most, keyframe.*number);
+  }
+  if (first + most - least > kMost) {
+    throw InputError(
+        "map: the ids or segments of its keyframes, with those of maps loaded "
+        "before, go beyond 1,000,000,000; number them from 0");
+  }
+  return static_cast<int>(first - least);
+}
+
+}  // namespace
 
 Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
            const RgbdCamera& camera)
@@ -20,16 +41,19 @@ Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
 }
 
 void Slam::Load(KeyframeMap map, bool is_held) {
+  RequireSound(map.Check(), "map: ");
   // A map that was loaded before may have the same ids.
+  const int id = OffsetOf(map, &Keyframe::id, first_id_);
+  const int segment = OffsetOf(map, &Keyframe::segment, first_segment_);
   for (Keyframe& keyframe : map.keyframes) {
-    keyframe.id += first_id_;
-    keyframe.segment += first_segment_;
+    keyframe.id += id;
+    keyframe.segment += segment;
   }
   for (RelativePose& edge : map.edges) {
-    edge.ref += first_id_;
-    edge.cur += first_id_;
+    edge.ref += id;
+    edge.cur += id;
   }
-  for (MapUp& up : map.ups) up.keyframe += first_id_;
+  for (MapUp& up : map.ups) up.keyframe += id;
   mapper_.Load(map, is_held);
   for (const RelativePose& edge : map.edges) {
     links_.push_back({edge.ref, edge.cur, false});

@@ -74,8 +74,9 @@ class Slam {
   // Starts with maps of the same camera; call it before the first frame. The
   // first frames form a segment of their own, which is joined to the map when
   // they see a mapped place. Separate maps are joined when the camera sees
-  // both. `is_held`: tracks within the map without changing it. Throws
-  // InputError for a map of another camera or an invalid map.
+  // both. Ids and segments are moved up where they are negative or in use.
+  // `is_held`: tracks within the map without changing it. Throws InputError for
+  // a map of another camera or an invalid map.
   void Load(KeyframeMap map, bool is_held);
 
   // Says what is known of an inertial sensor beside the camera; call it before
