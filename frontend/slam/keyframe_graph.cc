@@ -5,6 +5,24 @@
 #include <utility>
 
 namespace rgbd_pose {
+namespace {
+
+// The covariance of the inverse of a motion from that of the motion itself,
+// both of [omega C] as in MotionEstimate. With the translation t of the motion,
+// errors are to first order, up to their common sign,
+//
+//   omega' = R^T omega,   C' = R C + t x omega
+MotionMatrix CovarianceOfInverse(const RelativePose& edge) {
+  const Eigen::Matrix3d R = edge.cur_from_ref.rotation.toRotationMatrix();
+  MotionMatrix by_motion = MotionMatrix::Zero();
+  by_motion.topLeftCorner<3, 3>() = R.transpose();
+  by_motion.bottomLeftCorner<3, 3>() =
+      CrossMatrix(edge.cur_from_ref.translation);
+  by_motion.bottomRightCorner<3, 3>() = R;
+  return by_motion * edge.covariance * by_motion.transpose();
+}
+
+}  // namespace
 
 void CovisibilityGraph::Join(int a, int b) {
   neighbors_[a].push_back(b);
@@ -123,9 +141,11 @@ void KeyframeGraph::Remove(int at, int anchor) {
     return pair.edge.ref == which || pair.edge.cur == which;
   };
   for (const KeyframePair& pair : pairs_) {
-    if (links(pair, at) && links(pair, anchor)) {
-      from_anchor.covariance = CovarianceOf(pair.edge);
-    }
+    if (!links(pair, at) || !links(pair, anchor)) continue;
+    RelativePose edge = pair.edge;
+    // The pairs of a map that was loaded may lead to earlier keyframes.
+    if (edge.ref == at) edge.covariance = CovarianceOfInverse(edge);
+    from_anchor.covariance = CovarianceOf(edge);
   }
   nodes_[at].from_anchor = from_anchor;
   links_.Separate(at);

@@ -246,6 +246,45 @@ TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
   EXPECT_GT(anchored.covariance.trace(), edge.covariance.trace());
 }
 
+// Edges of a loaded map may lead to earlier keyframes. The errors of such a
+// motion follow from those of its inverse by finite differences.
+TEST(KeyframeGraphTest, MotionsToAnAnchorAreAsCertainInEitherDirection) {
+  const Rigid3d cur_from_ref =
+      Rigid3d::FromRotationVector({0.3, -1.2, 0.1}, {1.0, 0.5, -2.0});
+  const Rigid3d ref_from_cur = cur_from_ref.Inverse();
+  constexpr double kStep = 1e-6;
+  MotionMatrix by_motion;
+  for (int i = 0; i < 6; ++i) {
+    const MotionVector e = kStep * MotionVector::Unit(i);
+    const Eigen::Quaterniond turned =
+        Rigid3d::FromRotationVector(e.head<3>(), {0, 0, 0}).rotation *
+        cur_from_ref.rotation;
+    const Rigid3d moved =
+        Rigid3d(turned.conjugate(), ref_from_cur.translation + e.tail<3>());
+    by_motion.col(i) << RotationVector(moved.rotation * cur_from_ref.rotation),
+        moved.Inverse().translation - cur_from_ref.translation;
+  }
+  by_motion /= kStep;
+  MotionMatrix covariance = 1e-4 * MotionMatrix::Identity();
+  covariance(3, 3) = 1e-2;
+  covariance(0, 4) = covariance(4, 0) = 5e-5;
+  const MotionMatrix of_inverse =
+      by_motion * covariance * by_motion.transpose();
+  MotionMatrix expected;
+  for (const RelativePose& pair :
+       {RelativePose{0, 1, cur_from_ref, covariance},
+        RelativePose{1, 0, ref_from_cur, of_inverse}}) {
+    KeyframeGraph graph(10, 0.01);
+    graph.Add(Rigid3d(), 0);
+    graph.Add(ref_from_cur, 0);
+    graph.AddPair(pair, /*is_tracked=*/false);
+    graph.Remove(1, 0);
+    const MotionMatrix actual = graph.Reanchor(Step(1, 2)).covariance;
+    if (pair.ref == 0) expected = actual;
+    EXPECT_TRUE(actual.isApprox(expected, 1e-5)) << actual << "\n" << expected;
+  }
+}
+
 TEST(KeyframeGraphTest, WhatIsHeldNeverMoves) {
   Circle circle;
   KeyframeGraph graph(10, 0.01);
