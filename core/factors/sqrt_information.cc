@@ -11,6 +11,13 @@ SmallMatrix SqrtInformation(const SmallMatrix& information) {
   const SmallMatrix none =
       SmallMatrix::Constant(information.rows(), information.cols(), NAN);
   if (!information.allFinite()) return none;
+  // However small all entries are, one on the diagonal is below 0 by no more
+  // than rounding.
+  constexpr double kRounding = 1e-12;
+  if (information.diagonal().minCoeff() <
+      -kRounding * information.diagonal().maxCoeff()) {
+    return none;
+  }
   // Scaled first: rotation and translation differ by orders of magnitude.
   const Eigen::VectorXd size =
       information.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(

@@ -86,6 +86,10 @@ std::string FindBadInput(const GraphTerms& graph) {
     if (!edge.root.allFinite()) {
       return name + " has a covariance that is not positive definite";
     }
+    constexpr double kAsymmetry = 1e-6;  // by rounding, as a share
+    if (!edge.covariance.isApprox(edge.covariance.transpose(), kAsymmetry)) {
+      return name + " has a covariance that is not symmetric";
+    }
   }
   for (const GraphTerms::Direction& direction : graph.directions) {
     const int a = direction.a, b = direction.b;

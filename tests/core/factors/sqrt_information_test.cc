@@ -25,6 +25,9 @@ TEST(SqrtInformationTest, GivesTheInformationBack) {
   root = SqrtInformation(information);
   EXPECT_TRUE((root.transpose() * root).isApprox(information, 1e-12));
 
+  information(2, 2) = -1e-17;  // by rounding
+  root = SqrtInformation(information);
+  EXPECT_TRUE((root.transpose() * root).isApprox(information, 1e-12));
   information(2, 2) = -1.0;
   EXPECT_TRUE(SqrtInformation(information).hasNaN());
 }
@@ -37,6 +40,15 @@ TEST(SqrtInformationTest, OfACovarianceThatIsPositiveDefinite) {
   EXPECT_TRUE((S.transpose() * S * covariance).isIdentity(1e-12));
   EXPECT_THROW(SqrtInformationOfCovariance(MotionMatrix::Zero()), InputError);
   EXPECT_THROW(SqrtInformationOfCovariance(-covariance), InputError);
+  for (const double size : {1e-12, 1.0, 1e12}) {
+    Eigen::Matrix2d crossed;
+    crossed << size, 2.0 * size, 2.0 * size, size;
+    EXPECT_THROW(SqrtInformationOfCovariance(crossed), InputError) << size;
+    EXPECT_THROW(
+        SqrtInformationOfCovariance(-size * Eigen::Matrix3d::Identity()),
+        InputError)
+        << size;
+  }
   Eigen::Matrix3d skewed = Eigen::Matrix3d::Identity();
   skewed(0, 1) = 0.5;
   EXPECT_THROW(SqrtInformationOfCovariance(skewed), InputError);

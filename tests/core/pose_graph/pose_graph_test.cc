@@ -249,6 +249,8 @@ TEST(PoseGraphTest, ABadGraphIsAStatusAndMovesNothing) {
       {EdgeWith([](RelativePose* edge) { edge->covariance(3, 3) = -1.0; }),
        GraphStatus::kBadInput,
        kEdge + "covariance that is not positive definite"},
+      {EdgeWith([](RelativePose* edge) { edge->covariance(0, 5) = 0.5; }),
+       GraphStatus::kBadInput, kEdge + "covariance that is not symmetric"},
       {[](PoseGraph* g) { g->AddEdge(AnyEdge(0, 7)); }, GraphStatus::kBadInput,
        "the edge from pose 0 to pose 7 does not connect two poses of the "
        "graph"}};
