@@ -143,6 +143,16 @@ std::string AccelerationError(double median, double gyro_median) {
   return "";
 }
 
+// The fastest turn that two samples in a row show: a single one may be a fault
+// of the sensor or its cable.
+double FastestOf(const std::vector<double>& gyro) {
+  double fastest = gyro.size() == 1 ? gyro.front() : 0.0;
+  for (size_t i = 1; i < gyro.size(); ++i) {
+    fastest = std::max(fastest, std::min(gyro[i - 1], gyro[i]));
+  }
+  return fastest;
+}
+
 std::string DegreesError(double fastest) {
   return Format(
       "the gyroscope turns by up to %.4g, which is in degrees per second; "
@@ -166,7 +176,7 @@ ImuFindings ExamineImu(const std::vector<ImuSample>& recorded) {
     accel.push_back(sample.accel.norm());
     gyro.push_back(sample.gyro.norm());
   }
-  const double fastest = *std::max_element(gyro.begin(), gyro.end());
+  const double fastest = FastestOf(gyro);
   const double median = Median(accel), gyro_median = Median(gyro);
   if (!IsGravity(median, 1.0)) {
     findings.error = AccelerationError(median, gyro_median);

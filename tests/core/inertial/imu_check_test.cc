@@ -76,6 +76,18 @@ TEST(ImuCheckTest, FindsDegrees) {
       << "a single sample that is no number hides the mistake";
 }
 
+// A bit that a cable turns over is no unit.
+TEST(ImuCheckTest, ASingleSampleIsNotTakenForDegrees) {
+  int count = 0;
+  const ImuFindings findings = Examine([&count](ImuSample* s) {
+    if (++count % 500 == 0) s->gyro.x() = 65.0;
+  });
+  EXPECT_EQ(findings.error, "");
+  EXPECT_EQ(findings.warning, "");
+  EXPECT_THAT(ExamineImu({{0.0, {65.0, 0.0, 0.0}, {0.0, 0.0, 9.81}}}).error,
+              HasSubstr("in degrees per second"));
+}
+
 TEST(ImuCheckTest, SaysWhichAxesFitGravity) {
   EXPECT_THAT(
       Examine([](ImuSample* s) {
