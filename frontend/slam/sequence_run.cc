@@ -51,14 +51,12 @@ void SequenceRun::AddImu(const std::vector<ImuSample>& samples) {
   }
 }
 
-void SequenceRun::DegradeLast(const std::string& reason) {
-  const auto degrade = [&](TrackedFrame* tracked) {
-    if (tracked->status != TrackingStatus::kOk) return;
-    tracked->status = TrackingStatus::kDegraded;
-    tracked->reason = reason;
-  };
-  degrade(&results_.frames.back());
-  if (slam_ != nullptr) degrade(&slam_frames_.back().tracked);
+void SequenceRun::DoubtNext(const std::string& reason) {
+  if (slam_ != nullptr) {
+    slam_->DoubtNext(reason);
+  } else {
+    odometry_->DoubtNext(reason);
+  }
 }
 
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
@@ -123,9 +121,10 @@ std::string TrackAll(FrameSource* source, int threads,
   while (const std::optional<StreamedFrame> next = stream.Next()) {
     const bool is_repeated = repeated.IsRepeated(next->frame);
     for (SequenceRun* run : runs) {
+      if (is_repeated) {
+        run->DoubtNext("an image of it is that of the frame before");
+      }
       run->Add(*next);
-      if (is_repeated)
-        run->DegradeLast("an image of it is that of the frame before");
     }
     if (on_frame && !on_frame(next->frame)) break;
   }

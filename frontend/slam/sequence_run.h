@@ -93,9 +93,8 @@ class SequenceRun {
   void UseImu(const ImuSensor& sensor);
   void AddImu(const std::vector<ImuSample>& samples);
 
-  // Marks the last frame as degraded unless it is lost: what was found of it is
-  // not to be relied on.
-  void DegradeLast(const std::string& reason);
+  // See Odometry::DoubtNext.
+  void DoubtNext(const std::string& reason);
 
   // The odometry that tracks the frames and can prepare frames in advance.
   const Odometry& odometry() const {

@@ -196,6 +196,11 @@ void Odometry::Judge(TrackedFrame* result) {
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(result);
+  const std::string doubt = std::exchange(doubt_, "");
+  if (!doubt.empty() && result->status == TrackingStatus::kOk) {
+    result->status = TrackingStatus::kDegraded;
+    result->reason = doubt;
+  }
 }
 
 void Odometry::Learn(const Frame& frame, const TrackedFrame& result) {

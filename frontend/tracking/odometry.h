@@ -88,6 +88,11 @@ class Odometry {
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);
 
+  // Says why what images show of the next frame is not to be relied on, such as
+  // that one was sent twice: it is `degraded` at best, with this reason, and
+  // nothing is learnt from it.
+  void DoubtNext(const std::string& reason) { doubt_ = reason; }
+
   // Precomputes everything about a frame that does not depend on other frames.
   // May be called from any thread while this object lives.
   void Prepare(const PreparedFrame& frame) const { tracker_->Prepare(frame); }
@@ -179,8 +184,8 @@ class Odometry {
   void FindPose(const PreparedFrame& frame,
                 const std::optional<Prediction>& prediction,
                 TrackedFrame* result);
-  // Degrades a pose whose segment is not yet connected, or whose inflation is
-  // unusual.
+  // Degrades a pose whose segment is not yet connected, whose inflation is
+  // unusual, or that was doubted before.
   void Judge(TrackedFrame* result);
   // Degrades a frame whose covariance was inflated far more than usual.
   void JudgeInflation(TrackedFrame* result);
@@ -319,6 +324,7 @@ class Odometry {
   TrackingAttempts attempts_;  // at the last frame
   State state_;
   std::optional<InertialTracking> inertial_;  // nothing: no such sensor
+  std::string doubt_;                         // see DoubtNext
   int num_frames_ = 0;
 };
 

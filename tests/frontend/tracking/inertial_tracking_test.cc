@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -19,10 +20,11 @@ namespace {
 constexpr int kFrames = 80;
 constexpr int kBlindFrom = 50, kBlindTo = 65;
 
-// A rolling shutter and an inertial sensor.
+// Rolling shutters and an inertial sensor.
 struct HandWithImu {
-  HandWithImu(const std::string& path, int frames)
-      : sequence(path, RollingShutters(1.0), frames),
+  HandWithImu(const std::string& path, int frames,
+              const Shutters& shutters = RollingShutters(1.0))
+      : sequence(path, shutters, frames),
         samples(sequence.dataset.SimulateImu(Options())) {
     sensor.calibration.cam_from_imu = Options().cam_from_imu;
   }
@@ -121,6 +123,32 @@ TEST(InertialTrackingTest, GoesOnWhereImagesShowNothing) {
     EXPECT_EQ(run.frames[i].status, TrackingStatus::kOk) << i;
     EXPECT_EQ(run.frames[i].segment, 0) << i;
     EXPECT_LT(ShiftError(run, kBlindFrom - 1, i), 0.015) << i;
+  }
+}
+
+// Images that a driver has sent again show no turn where the gyroscope has
+// measured one.
+TEST(InertialTrackingTest, LearnsNothingFromFramesThatAreDoubted) {
+  constexpr int kNew = 6, kSent = 8;  // images
+  const HandWithImu hand("handheld", kFrames, Shutters());
+  for (const bool is_doubted : {false, true}) {
+    Odometry odometry =
+        OdometryFor(hand.sequence, "hybrid", ShutterUse::kCamera);
+    odometry.UseImu(hand.sensor);
+    odometry.AddImu(hand.samples);
+    for (int i = 0; i < kFrames; ++i) {
+      const int shown = i - std::max(0, i % kSent - kNew + 1);
+      const bool is_repeated = shown < i;
+      Frame frame = hand.sequence.frames[shown];
+      frame.timestamp = hand.sequence.frames[i].timestamp;
+      if (is_repeated && is_doubted) odometry.DoubtNext("sent twice");
+      const TrackedFrame tracked = odometry.Track(frame);
+      if (!is_repeated || !is_doubted) continue;
+      EXPECT_EQ(tracked.status, TrackingStatus::kDegraded) << i;
+      EXPECT_EQ(tracked.reason, "sent twice") << i;
+    }
+    EXPECT_EQ(odometry.imu()->is_trusted(), is_doubted)
+        << odometry.imu()->doubt();
   }
 }
 
