@@ -24,6 +24,16 @@ bool HasRaysAllAround(const Camera& camera) {
   return true;
 }
 
+// Whether the principal point is near the centre, as that of images that were
+// not cropped.
+bool IsCentred(const Camera& camera) {
+  constexpr double kMaxOffCentre = 0.1;  // share of the size
+  return std::abs(camera.cx - 0.5 * (camera.width - 1)) <=
+             kMaxOffCentre * camera.width &&
+         std::abs(camera.cy - 0.5 * (camera.height - 1)) <=
+             kMaxOffCentre * camera.height;
+}
+
 // The parameter whose halves differ most; null if the halves were not compared.
 const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
   const auto worst = std::max_element(
@@ -91,8 +101,7 @@ std::string UnseenInWords(const CalibrationResult& result) {
 
 std::string ImplausibilityReason(const RgbdCamera& first,
                                  const CalibrationResult& result) {
-  constexpr double kMaxAspect = 0.01;    // difference of fx and fy, as a share
-  constexpr double kMaxOffCentre = 0.1;  // principal point, share of the size
+  constexpr double kMaxAspect = 0.01;  // difference of fx and fy, as a share
   constexpr double kMaxPriorSigmas = 4.0;  // of any parameter
   const auto implausible = [](const std::string& why) {
     return "the camera found is not plausible: " + why;
@@ -105,10 +114,7 @@ std::string ImplausibilityReason(const RgbdCamera& first,
     return implausible(
         Format("fx and fy differ by %.3g %%", 100.0 * std::abs(aspect - 1.0)));
   }
-  if (std::abs(camera.cx - 0.5 * (camera.width - 1)) >
-          kMaxOffCentre * camera.width ||
-      std::abs(camera.cy - 0.5 * (camera.height - 1)) >
-          kMaxOffCentre * camera.height) {
+  if (IsCentred(first.camera) && !IsCentred(camera)) {
     return implausible(Format(
         "its principal point (%.3g, %.3g) is too far from the image centre",
         camera.cx, camera.cy));

@@ -260,6 +260,18 @@ TEST(CalibrationTest, ALensThatTurnsOverInTheCornersIsRefused) {
   EXPECT_EQ(ImplausibilityReason({}, result), "");
 }
 
+TEST(CalibrationTest, OnlyAPrincipalPointThatLeavesTheCentreIsRefused) {
+  CalibrationResult result;
+  result.found.camera.cx = 390.0;
+  const std::string why = ImplausibilityReason({}, result);
+  EXPECT_NE(why.find("principal point (390, 240) is too far"),
+            std::string::npos)
+      << why;
+  RgbdCamera cropped;
+  cropped.camera.cx = 388.0;
+  EXPECT_EQ(ImplausibilityReason(cropped, result), "");
+}
+
 TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   // Odometry corrects the wrong depth offset only approximately.
   RgbdCamera wrong = Wrong();
