@@ -85,6 +85,9 @@ CameraImu::CameraImu(const ImuSensor& sensor)
   if (!std::isfinite(delay_s_)) {
     throw InputError("inertial sensor: its delay must be a number of seconds");
   }
+  if (!cam_from_imu_.IsFinite()) {
+    throw InputError("inertial sensor: its mounting must be finite");
+  }
   State sigmas;
   const bool has_delay = sensor.calibration.delay_s.has_value();
   sigmas << Eigen::Vector3d::Constant(kBiasSigma),

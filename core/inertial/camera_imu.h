@@ -47,7 +47,7 @@ class CameraImu {
   static constexpr double kMountingSigma = 0.05;
 
   // The sensor must have a gyroscope whose mounting is known. Throws InputError
-  // if its noise or its delay cannot be used.
+  // if its noise, its delay or its mounting cannot be used.
   explicit CameraImu(const ImuSensor& sensor);
 
   // Whether a sensor can be used: it has a gyroscope, its mounting is known.

@@ -162,6 +162,16 @@ GravityEstimate EstimateGravity(const std::vector<MeanForce>& forces) {
         forces.size(), kFewestMeans);
     return estimate;
   }
+  const bool is_finite =
+      std::all_of(forces.begin(), forces.end(), [](const MeanForce& force) {
+        return force.world_from_cam.IsFinite() && force.up_in_cam.allFinite();
+      });
+  if (!is_finite) {
+    estimate.refusal =
+        "a pose of the path, a sample or the mounting of the sensor is not "
+        "finite";
+    return estimate;
+  }
   Vector6d x;  // [s b]
   x << MedianOf(forces), Eigen::Vector3d::Zero();
   NormalEquations equations;

@@ -48,9 +48,9 @@ inline constexpr double kAccelBiasSigma = 0.2;
 //
 // by least squares under Cauchy's loss, with a scale from the residuals. With a
 // camera that does not turn, the sigma is that of the bias. A path that drifts
-// counts as scatter. Refused if there are fewer than three means, if what they
-// measure is not gravity (free fall, a wrong unit), and if they contradict each
-// other.
+// counts as scatter. Refused if there are fewer than three means, if one is not
+// finite, if what they measure is not gravity (free fall, a wrong unit), and if
+// they contradict each other.
 GravityEstimate EstimateGravity(const std::vector<MeanForce>& forces);
 
 // The same for what a meter measures along paths, world_from_cam, in several

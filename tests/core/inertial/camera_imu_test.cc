@@ -171,13 +171,16 @@ TEST(CameraImuTest, BelievesOnlyAxesThatTurnsHaveTested) {
   EXPECT_TRUE(imu.is_trusted()) << imu.doubt();
 }
 
-TEST(CameraImuTest, RefusesNoiseAndDelaysThatCannotBe) {
+TEST(CameraImuTest, RefusesNoiseDelaysAndMountingsThatCannotBe) {
   ImuSensor sensor;
   sensor.has_gyro = true;
   sensor.calibration.cam_from_imu = Rigid3d();
   sensor.calibration.delay_s = std::nan("");
   ExpectInputError([&] { CameraImu imu(sensor); }, {"delay"});
   sensor.calibration.delay_s = 0.0;
+  sensor.calibration.cam_from_imu->translation.x() = std::nan("");
+  ExpectInputError([&] { CameraImu imu(sensor); }, {"mounting"});
+  sensor.calibration.cam_from_imu = Rigid3d();
   sensor.calibration.noise = ImuNoise();
   sensor.calibration.noise->gyro_density = -1.0;
   ExpectInputError([&] { CameraImu imu(sensor); }, {"inertial sensor"});

@@ -96,6 +96,9 @@ TEST(GravityEstimateTest, RefusesWhatDoesNotDetermineIt) {
   EXPECT_THAT(refusal(shaken), HasSubstr("scatter by"));
   EXPECT_THAT(refusal(Means(40, 0.8, 1, {0, 9.8, 0}, {0, 0, 2.5})),
               HasSubstr("its mounting may be wrong"));
+  std::vector<MeanForce> unknown = Means(40, 0.8);
+  unknown[7].up_in_cam.x() = std::nan("");
+  EXPECT_THAT(refusal(unknown), HasSubstr("is not finite"));
 }
 
 TEST(GravityEstimateTest, RefusesASensorWithoutMountingOrSamples) {
