@@ -29,11 +29,17 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   OdometryKeyframe* const earlier = keyframes_.FindNearest(
       world_from_cam, state_.segment, kMinReturnShare,
       kMaxReturnFlow * options_.max_flow_px, state_.reference);
+  // If few features agree, only the refined pose shows how much is in view.
+  const auto is_near = [&] {
+    const TrackingResult& tracked = attempts_.kept();
+    return !NeedsNewReference() ||
+           (tracked.needs_new_keyframe && tracked.needs_refinement);
+  };
   if (earlier != nullptr &&
       attempts_.TryFallback(
           frame, *earlier,
           GuessOf(world_from_cam.Inverse() * earlier->world_from_cam), result,
-          [&] { return !NeedsNewReference(); })) {
+          is_near)) {
     state_.reference = earlier;
     TakeMotion(result);
     return;

@@ -75,14 +75,18 @@ bool TrackingAttempts::TryInTurn(const PreparedFrame& frame,
 
 bool TrackingAttempts::TryFallback(const PreparedFrame& frame,
                                    const OdometryKeyframe& keyframe,
-                                   const TrackingGuess& guess,
-                                   TrackedFrame* result, const Accept& accept) {
+                                   TrackingGuess guess, TrackedFrame* result,
+                                   const Accept& accept) {
   TrackedFrame attempt = *result;
   std::swap(tracked_, other_);
-  if (Try(frame, keyframe, guess, &attempt) &&
-      attempt.status == TrackingStatus::kOk && (!accept || accept())) {
-    *result = std::move(attempt);
-    return true;
+  guess.leaves_refinement = true;
+  const auto is_accepted = [&] { return !accept || accept(); };
+  if (Try(frame, keyframe, guess, &attempt) && is_accepted()) {
+    Refine(frame, keyframe, guess, &attempt);
+    if (attempt.status == TrackingStatus::kOk && is_accepted()) {
+      *result = std::move(attempt);
+      return true;
+    }
   }
   std::swap(tracked_, other_);
   result->iterations = attempt.iterations;

@@ -43,10 +43,11 @@ class TrackingAttempts {
                  const Find& find, TrackedFrame* result);
 
   // Makes another attempt after a pose was found. It counts if its pose is good
-  // and `accept`, called while kept() is the new result, returns true.
+  // and `accept`, called while kept() is the new result, returns true before
+  // and after the pose is refined: what is refused takes no time to refine.
   // Otherwise returns false and changes only iterations and times.
   bool TryFallback(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
-                   const TrackingGuess& guess, TrackedFrame* result,
+                   TrackingGuess guess, TrackedFrame* result,
                    const Accept& accept = nullptr);
 
   // Refines the pose that counts if its attempt has left that.

@@ -63,9 +63,17 @@ class ScriptedTracker final : public FakeTracker {
     ++num_again;
   }
 
+  void Refine(const Reference& /*reference*/, const PreparedFrame& /*frame*/,
+              const TrackingGuess& /*guess*/,
+              TrackingResult* tracked) override {
+    tracked->overlap.share = 1.0;
+    ++num_refined;
+  }
+
   int num_tracked = 0;
   int num_slow = 0;
   int num_again = 0;
+  int num_refined = 0;
 
  private:
   Outcome first_, second_, third_;
@@ -163,6 +171,34 @@ TEST(TrackingAttemptsTest, ACorrectionReplacesThePoseAndAddsItsTime) {
   EXPECT_EQ(tracker.num_again, 1);
   attempts.Restore(first);
   EXPECT_EQ(attempts.kept().estimate.cur_from_prev.translation.x(), kFirst);
+}
+
+TEST(TrackingAttemptsTest, OnlyWhatIsAcceptedIsRefinedAndJudgedAgain) {
+  ScriptedTracker tracker(kGood, kGood, kNone);
+  TrackingAttempts attempts(&tracker);
+  OdometryKeyframe keyframe;
+  keyframe.reference = std::make_unique<Reference>();
+  TrackedFrame result;
+  const PreparedFrame frame{Frame()};
+  ASSERT_TRUE(attempts.Try(frame, keyframe, At(kFirst), &result));
+  const auto from_second = [&](const TrackingAttempts::Accept& accept) {
+    return attempts.TryFallback(frame, keyframe, At(kSecond), &result, accept);
+  };
+  const auto kept_x = [&] {
+    return attempts.kept().estimate.cur_from_prev.translation.x();
+  };
+  EXPECT_FALSE(from_second([] { return false; }));
+  EXPECT_EQ(tracker.num_refined, 0);
+  EXPECT_EQ(kept_x(), kFirst);
+  const auto is_seen = [&] { return attempts.kept().overlap.share > 0.5; };
+  EXPECT_FALSE(from_second([&] { return !is_seen(); }));
+  EXPECT_EQ(tracker.num_refined, 1);
+  EXPECT_EQ(kept_x(), kFirst);
+  EXPECT_TRUE(from_second([] { return true; }));
+  EXPECT_EQ(tracker.num_refined, 2);
+  EXPECT_TRUE(is_seen());
+  EXPECT_EQ(kept_x(), kSecond);
+  EXPECT_EQ(result.iterations, tracker.num_tracked);
 }
 
 }  // namespace
