@@ -7,6 +7,7 @@
 #include "core/evaluation/association.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
@@ -30,6 +31,24 @@ std::string SameStampRemark(const std::string& recording, int images) {
          (images == 1 ? " image has" : " images have") +
          " the same time stamp as another and " + (images == 1 ? "is" : "are") +
          " left out; are these the times when the images were taken?";
+}
+
+std::string IntervalRemark(const std::string& recording,
+                           const std::vector<double>& timestamps) {
+  // A camera's milliseconds are 11 s or more, read as seconds.
+  constexpr double kLongInterval = 10.0;  // s
+  std::vector<double> intervals;
+  for (size_t i = 1; i < timestamps.size(); ++i) {
+    intervals.push_back(timestamps[i] - timestamps[i - 1]);
+  }
+  if (intervals.empty()) return "";
+  const double usual = Median(intervals);
+  if (usual <= kLongInterval) return "";
+  return recording +
+         Format(
+             ": frames are %.4g s apart; are their time stamps milli- or "
+             "microseconds? They must be in seconds",
+             usual);
 }
 
 bool ImagePairing::AddColor(StampedImage image) {

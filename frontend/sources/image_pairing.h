@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace rgbd_pose {
 
@@ -31,6 +32,11 @@ struct StampedImage {
 
 // A remark for users: images were left out because of duplicate stamps.
 std::string SameStampRemark(const std::string& recording, int images);
+
+// A remark for users if frames are so far apart that their time stamps (s) are
+// probably in another unit; empty otherwise.
+std::string IntervalRemark(const std::string& recording,
+                           const std::vector<double>& timestamps);
 
 // Pairs a stream of colour images with a stream of depth images by nearest
 // time, as Associate does for complete lists. Images may be out of order within

@@ -7,6 +7,7 @@
 #include "core/util/text_file.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/frame_source.h"
+#include "frontend/sources/image_pairing.h"
 #include "frontend/sources/masks.h"
 #include "frontend/sources/numbered_layouts.h"
 #include "frontend/sources/numbered_paths.h"
@@ -63,8 +64,10 @@ class NumberedDataset final : public Dataset {
     }
     std::vector<std::string> colors;
     for (const auto& frame : folder_.frames) colors.push_back(frame.color_path);
-    const std::string masks = MaskRemark(colors);
-    if (!masks.empty()) lines.push_back(masks);
+    for (const std::string& line :
+         {IntervalRemark(folder_.path.string(), times_), MaskRemark(colors)}) {
+      if (!line.empty()) lines.push_back(line);
+    }
     return lines;
   }
   int unmatched_color() const override {

@@ -336,8 +336,10 @@ class TumDataset final : public Dataset {
     }
     std::vector<std::string> colors;
     for (const auto& pair : lists_.pairs) colors.push_back(pair.color.path);
-    const std::string masks = MaskRemark(colors);
-    if (!masks.empty()) lines.push_back(masks);
+    for (const std::string& line :
+         {IntervalRemark(folder_, timestamps()), MaskRemark(colors)}) {
+      if (!line.empty()) lines.push_back(line);
+    }
     return lines;
   }
 

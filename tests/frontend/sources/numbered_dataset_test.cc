@@ -43,6 +43,14 @@ TEST_F(NumberedDatasetTest, TakesTimesWhereTheyLie) {
                    {"timestamps.txt:3: the time is not after"});
 }
 
+TEST_F(NumberedDatasetTest, SaysThatTimesAreProbablyNotInSeconds) {
+  WriteSevenScenes();
+  WriteText("timestamps.txt", "0\n33\n67\n");
+  const auto remarks = OpenSource("auto", WithCamera())->remarks();
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_NE(remarks[0].find("frames are 33.5 s apart"), std::string::npos);
+}
+
 // All recordings of 7-Scenes are of a Kinect, whose rows are read one by one.
 TEST_F(NumberedDatasetTest, KnowsTheShutterOfSevenScenes) {
   WriteSevenScenes();

@@ -229,6 +229,17 @@ TEST_F(TumListsTest, TakesOneImageOfATimeStamp) {
   EXPECT_EQ(dataset->remarks(), std::vector<std::string>{remark});
 }
 
+TEST_F(TumListsTest, SaysThatTimesAreProbablyNotInSeconds) {
+  UseAssociations(
+      "33 rgb/0.png 33 depth/0.png\n67 rgb/1.jpg 67 depth/1.png\n"
+      "100 rgb/3.png 100 depth/3.png\n");
+  EXPECT_EQ(OpenTum(options_)->remarks(),
+            std::vector<std::string>{
+                folder_.path() +
+                ": frames are 33.5 s apart; are their time stamps milli- or "
+                "microseconds? They must be in seconds"});
+}
+
 TEST_F(TumListsTest, RefusesAMissingList) {
   std::filesystem::remove(folder_ / "rgb.txt");
   ExpectRefused({"rgb.txt: missing"});
