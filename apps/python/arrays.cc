@@ -183,8 +183,12 @@ void WarnUser(const std::string& remark) {
 }
 
 Trajectory TrajectoryFrom(const py::object& object, const std::string& name) {
-  if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__")) {
-    return ReadTrajectory(PathFrom(object));
+  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) ||
+      py::hasattr(object, "__fspath__")) {
+    std::vector<std::string> remarks;
+    Trajectory trajectory = ReadTrajectory(PathFrom(object), &remarks);
+    for (const std::string& remark : remarks) WarnUser(remark);
+    return trajectory;
   }
   if (!py::isinstance<py::sequence>(object) || py::len(object) != 2) {
     throw InputError(name +

@@ -173,7 +173,7 @@ All other arguments are those of evaluate_ate.)",
   module->def(
       "read_trajectory",
       [](const py::object& path) {
-        return ArraysFromTrajectory(ReadTrajectory(PathFrom(path)));
+        return ArraysFromTrajectory(TrajectoryFrom(path, "path"));
       },
       "Reads (timestamps (N,), poses (N, 4, 4)) from a TUM text file.",
       py::arg("path"));

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -20,6 +21,7 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
+#include "frontend/settings/sequence.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
 
@@ -85,8 +87,8 @@ Recording OpenRecording(const py::object& path, const py::object& camera,
         with_color.keep_color = keep_color;
         return PartOf(OpenSource(source, with_color), range);
       });
-  for (const std::string& remark : recording.source().remarks()) {
-    WarnUser(remark);
+  for (const std::string& line : DroppedFrames(recording.source(), {})) {
+    WarnUser(line);
   }
   return recording;
 }
@@ -168,18 +170,32 @@ void BindFrame(py::module_* module) {
 struct FrameIterator {
   std::shared_ptr<FrameSource> source;  // other threads may still read of it
   std::shared_ptr<std::mutex> mutex;
+  std::vector<std::string> said;  // to users, when it was opened
   bool is_at_end = false;
 
-  // Empty at the end.
-  std::optional<Frame> Next() {
+  // Empty at the end, where `news` gets what else is to be said, once.
+  std::optional<Frame> Next(std::vector<std::string>* news) {
     const ReleasedGil no_gil;
     std::optional<RgbdFrame> frame;
     {
       const std::lock_guard<std::mutex> lock(*mutex);
-      if (!is_at_end) frame = source->Next();
-      is_at_end = !frame.has_value();
+      if (!is_at_end) {
+        frame = source->Next();
+        is_at_end = !frame.has_value();
+        if (is_at_end) *news = News();
+      }
     }
     return frame ? std::make_optional(frame->read()) : std::nullopt;
+  }
+
+  // What reading has shown: a bag does not know its images before.
+  std::vector<std::string> News() const {
+    std::vector<std::string> lines;
+    for (std::string& line : DroppedFrames(*source, {})) {
+      const bool is_new = std::count(said.begin(), said.end(), line) == 0;
+      if (is_new) lines.push_back(std::move(line));
+    }
+    return lines;
   }
 };
 
@@ -187,9 +203,11 @@ void BindFrameIterator(py::module_* module) {
   py::class_<FrameIterator>(*module, "_FrameIterator")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", [](FrameIterator* self) {
-        std::optional<Frame> frame = self->Next();
-        if (!frame.has_value()) throw py::stop_iteration();
-        return *std::move(frame);
+        std::vector<std::string> news;
+        std::optional<Frame> frame = self->Next(&news);
+        if (frame.has_value()) return *std::move(frame);
+        for (const std::string& line : news) WarnUser(line);
+        throw py::stop_iteration();
       });
 }
 
@@ -225,7 +243,8 @@ recording does not specify. Raises InputError for unreadable input.)");
                 py::arg("depth_camera") = "", py::arg("depth_scale") = 0.0,
                 py::arg("topics") = py::tuple(), py::arg("imu") = py::none());
   recording.def("__iter__", [](Recording* self) {
-    return FrameIterator{self->Begin(), self->mutex()};
+    const std::shared_ptr<FrameSource> source = self->Begin();
+    return FrameIterator{source, self->mutex(), DroppedFrames(*source, {})};
   });
   recording.def("__repr__", &RecordingInWords);
   recording.def("__len__", &LengthOf);

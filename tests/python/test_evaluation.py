@@ -1,6 +1,7 @@
 """Compares the evaluation with the program rgbd_evaluate."""
 
 import json
+import os
 import warnings
 
 import numpy as np
@@ -60,6 +61,18 @@ def as_arrays(path):
 def as_quaternions(path):
     table = np.loadtxt(path)
     return table[:, 0], table[:, 1:]
+
+
+def test_warns_of_poses_that_are_left_out(files, tmp_path):
+    twice = tmp_path / "twice.txt"
+    text = files[0].read_text()
+    twice.write_text(text + text.splitlines(keepends=True)[-1])
+    for read in (
+        lambda: rgbd_pose.read_trajectory(os.fsencode(twice)),
+        lambda: rgbd_pose.evaluate_ate(twice, files[1]),
+    ):
+        with pytest.warns(UserWarning, match="1 such pose is left out"):
+            read()
 
 
 @pytest.mark.parametrize("form", [str, lambda p: p, as_arrays, as_quaternions])

@@ -1,7 +1,10 @@
 """Recordings of all kinds as sequences of frames."""
 
+import contextlib
 import os
 import shutil
+import sqlite3
+import struct
 import warnings
 
 import numpy as np
@@ -90,6 +93,67 @@ def test_warns_once_and_of_any_name(sequence, camera, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         rgbd_pose.Recording(sequence)  # nothing to say
+
+
+def test_warns_of_colour_without_depth(sequence, tmp_path):
+    folder = tmp_path / "gaps"
+    shutil.copytree(sequence, folder)
+    lines = (folder / "depth.txt").read_text().splitlines(keepends=True)
+    (folder / "depth.txt").write_text("".join(lines[:-2]))
+    with pytest.warns(UserWarning, match="2 colour images have no depth"):
+        rgbd_pose.Recording(folder)
+
+
+def write_bag(path, seconds):
+    """Writes a bag of ROS 2 with black images."""
+    width, height = 48, 32
+    little_endian = b"\0\1\0\0"
+
+    def image(second, encoding, size):
+        return struct.pack(
+            "<4siII4sIII6sBxII", little_endian, second, 0, 4, b"cam", height,
+            width, 6, encoding, 0, size * width, size * width * height,
+        ) + bytes(size * width * height)
+
+    def info(second):
+        matrix = [40, 0, width / 2, 0, 40, height / 2, 0, 0, 1]
+        return struct.pack(
+            "<4siII4sIII10s2xI4x35d6IB", little_endian, second, 0, 4, b"cam",
+            height, width, 10, b"plumb_bob", 5, *[0] * 5, *matrix, *[0] * 21,
+            *[0] * 7,
+        )
+
+    with contextlib.closing(sqlite3.connect(path)) as bag, bag:
+        bag.execute("CREATE TABLE topics (id INTEGER, name, type, "
+                    "serialization_format, offered_qos_profiles)")
+        bag.execute("CREATE TABLE messages (id INTEGER PRIMARY KEY, "
+                    "topic_id INTEGER, timestamp INTEGER, data BLOB)")
+        for topic, name in enumerate(("image", "depth", "camera_info")):
+            kind = "CameraInfo" if name == "camera_info" else "Image"
+            bag.execute("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')",
+                        (topic, f"/cam/{name}", f"sensor_msgs/msg/{kind}"))
+        for second in seconds:
+            for topic, message in enumerate((
+                image(second, b"mono8", 1), image(second, b"16UC1", 2),
+                info(second),
+            )):
+                bag.execute(
+                    "INSERT INTO messages (topic_id, timestamp, data) "
+                    "VALUES (?, ?, ?)", (topic, second * 10**9, message))
+
+
+def test_warns_at_the_end_of_what_a_bag_has_shown(tmp_path):
+    bag = tmp_path / "room.db3"
+    write_bag(bag, [1, 2, 2, 3])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        frames = iter(rgbd_pose.Recording(bag))
+        assert [next(frames).timestamp for _ in range(3)] == [1, 2, 3]
+    with pytest.warns(UserWarning, match="2 images have the same time stamp"):
+        assert next(frames, None) is None
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert next(frames, None) is None  # nothing twice
 
 
 def test_refuses_what_it_cannot_read(sequence, tmp_path):
