@@ -69,13 +69,20 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
   settings.fix = fix;
   settings.max_passes = max_passes;
   settings.max_views = max_views;
-  const ReleasedGil no_gil;
-  return {CalibrateRecording(
-              sequence, CalibrationOdometry(), CalibrationSlam(), settings,
-              NumThreads(threads), [](int, int, int) { ThrowIfInterrupted(); },
-              [](int, int) { ThrowIfInterrupted(); })
-              .result,
-          sequence.camera};
+  RecordingCalibration all;
+  {
+    const ReleasedGil no_gil;
+    all = CalibrateRecording(
+        sequence, CalibrationOdometry(), CalibrationSlam(), settings,
+        NumThreads(threads), [](int, int, int) { ThrowIfInterrupted(); },
+        [](int, int) { ThrowIfInterrupted(); });
+  }
+  for (const std::string& line : all.left_out) WarnUser(line);
+  if (!all.stopped.empty()) {
+    WarnUser("stopped early (" + all.stopped +
+             "); the result is of the frames before");
+  }
+  return {all.result, sequence.camera};
 }
 
 std::map<std::string, CalibratedParameter> Parameters(const Calibration& self) {

@@ -1,5 +1,6 @@
 """calibrate() finds the errors of a camera from a recording."""
 
+import shutil
 import subprocess
 import sys
 
@@ -77,6 +78,18 @@ def test_says_what_makes_no_sense(recording):
         rgbd_pose.calibrate(recording / "nothing")
     with pytest.raises(rgbd_pose.InputError, match="max_passes"):
         rgbd_pose.calibrate(recording, max_passes=0)
+
+
+def test_warns_of_what_is_left_out(recording, tmp_path):
+    damaged = tmp_path / "room"
+    shutil.copytree(recording, damaged)
+    for image in sorted((damaged / "rgb").iterdir())[5:8]:
+        image.write_bytes(b"")
+    with pytest.warns(UserWarning) as said:
+        rgbd_pose.calibrate(damaged, groundtruth="none", max_views=1000)
+    said = [str(warning.message) for warning in said]
+    assert sum("is empty; copy it again" in line for line in said) == 4
+    assert said[-1].startswith("stopped early (3 of 8 frames cannot be read")
 
 
 def test_an_interrupt_ends_it(recording):
