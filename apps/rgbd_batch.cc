@@ -113,16 +113,36 @@ void CheckFlags() {
   }
 }
 
-// The values of the lists would replace those of the file in each run.
+// Why a flag cannot be the same in all runs; empty: it can.
+std::string WhyNotForAll(const std::string& flag, const std::string& value) {
+  // The values of the lists would replace those of the file in each run.
+  for (const auto& [list, name, column, check] : BatchSettings()) {
+    if (flag != name) continue;
+    return std::string(" cannot be set for all runs; use --") + list;
+  }
+  if (flag == "dataset" || flag == "output") {
+    return " cannot be set for all runs; each has its own";
+  }
+  const bool is_result =
+      flag == "save_cloud" || flag == "save_mesh" || flag == "save_map";
+  if (is_result && fs::path(value).is_absolute()) {
+    return ": each run would replace that of the run before; give a relative "
+           "path, which is in the folder of each run";
+  }
+  return "";
+}
+
 void CheckSettings() {
   for (const TextLine& line : ReadTextTable(FLAGS_settings)) {
-    std::string flag = SplitText(line.words[0], '=')[0];
-    if (flag.rfind("--", 0) != 0) flag = "-" + flag;  // gflags takes -loss, too
-    for (const auto& [list, name, column, check] : BatchSettings()) {
-      if (flag != std::string("--") + name) continue;
-      throw InputError(FLAGS_settings, line.number,
-                       flag + " cannot be set for all runs; use --" + list);
-    }
+    const std::string& word = line.words[0];
+    const size_t begin = word.find_first_not_of('-');  // gflags takes -loss too
+    if (begin == word.npos) continue;
+    const size_t end = word.find('=', begin);
+    const std::string flag = word.substr(begin, end - begin);
+    const std::string why = WhyNotForAll(
+        flag, end == word.npos ? std::string() : word.substr(end + 1));
+    if (why.empty()) continue;
+    throw InputError(FLAGS_settings, line.number, "--" + flag + why);
   }
 }
 

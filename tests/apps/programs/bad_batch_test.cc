@@ -58,15 +58,24 @@ TEST_F(BadInputTest, BatchFlags) {
            "{seq}/rgb.txt: not an executable program"},
       },
       list);
-  ExpectRefused(kBadBatch,
-                {{"--settings={seq}/set.flags",
-                  "{seq}/set.flags:3: --loss cannot be set for all runs; use "
-                  "--losses"}},
-                [&](const Seq& seq) {
-                  list(seq);
-                  seq.Write("set.flags",
-                            "# mine\n--depth_noise=kinect\n--loss=huber\n");
-                });
+  const std::pair<const char*, const char*> kForAll[] = {
+      {"--loss=huber", "--loss cannot be set for all runs; use --losses"},
+      {"-loss=huber", "--loss cannot be set for all runs; use --losses"},
+      {"--output=x", "--output cannot be set for all runs; each has its own"},
+      {"--save_mesh=/tmp/mesh.ply",
+       "--save_mesh: each run would replace that of the run before; give a "
+       "relative path"}};
+  for (const auto& [flag, message] : kForAll) {
+    const std::string text =
+        std::string("# mine\n--depth_noise=kinect\n") + flag + "\n";
+    ExpectRefused(kBadBatch,
+                  {{"--settings={seq}/set.flags",
+                    std::string("{seq}/set.flags:3: ") + message}},
+                  [&](const Seq& seq) {
+                    list(seq);
+                    seq.Write("set.flags", text);
+                  });
+  }
 }
 
 TEST_F(BadInputTest, BatchRuns) {
