@@ -15,6 +15,7 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <opencv2/core.hpp>
 #include <stdexcept>
 #include <system_error>
@@ -211,6 +212,13 @@ void FinishOutput() {
                    ")");
 }
 
+// OpenCV has an error of its own for it.
+bool IsOutOfMemory(const std::exception& error) {
+  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+         (of_opencv != nullptr && of_opencv->code == cv::Error::StsNoMem);
+}
+
 }  // namespace
 
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
@@ -248,8 +256,12 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
                  error.code().message().c_str());
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: unexpected: %s\n", info.name.c_str(),
-                 error.what());
+    const std::string what =
+        IsOutOfMemory(error)
+            ? "there is not enough memory; use larger voxels, fewer or smaller "
+              "images, fewer threads, or give the program more"
+            : std::string("unexpected: ") + error.what();
+    std::fprintf(stderr, "%s: %s\n", info.name.c_str(), what.c_str());
     return kExitBadInput;
   }
 }

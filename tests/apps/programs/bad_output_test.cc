@@ -162,6 +162,28 @@ TEST_F(BadInputTest, FullDisks) {
           });
 }
 
+#ifndef RGBD_POSE_SANITIZED
+// Of OpenCV's images, and of others.
+TEST_F(BadInputTest, TooLittleMemory) {
+  constexpr char kSimulate[] =
+      "ulimit -v 300000; exec " RGBD_SIMULATE " --output={dir}/out --frames=";
+  constexpr char kMessage[] = "there is not enough memory; use larger voxels,";
+  ExpectEach(
+      kSimulate,
+      {
+          {"images",
+           [](const Seq& s) {
+             s.Write("huge.yaml",
+                     "Camera.fx: 9000\nCamera.fy: 9000\n"
+                     "Camera.cx: 6000\nCamera.cy: 6000\n"
+                     "Camera.width: 12000\nCamera.height: 12000\n");
+           },
+           "1 --camera={seq}/huge.yaml", 2, kMessage},
+          {"samples", nullptr, "1000000 --imu --imu_rate=1e5", 2, kMessage},
+      });
+}
+#endif
+
 std::string Contents(const std::string& folder) {
   std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
