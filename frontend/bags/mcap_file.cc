@@ -206,16 +206,17 @@ class McapFile final : public BagReader {
         channels.begin(), channels.end(),
         [](const auto& row) { return row.second.encoding == "cdr"; });
     format_ = is_ros2 ? WireFormat::kCdr : WireFormat::kRos1;
-    std::vector<std::string> others;  // encodings
+    std::set<std::string> others;  // encodings
     for (const auto& [number, channel] : channels) {
       if (channel.encoding != (is_ros2 ? "cdr" : "ros1")) {
-        others.push_back(channel.encoding);
+        others.insert(channel.encoding);
         continue;
       }
       AddTopic(number, channel.topic, channel.type);
     }
     if (topics_.empty() && !others.empty()) {
-      throw InputError(path + ": has messages encoded as " + Join(others) +
+      throw InputError(path + ": has messages encoded as " +
+                       Join({others.begin(), others.end()}) +
                        "; only those of ROS (cdr, ros1) are supported");
     }
   }

@@ -100,7 +100,7 @@ TEST_F(McapFileTest, SaysWhatItDoesNotRead) {
   const std::string text("\x03\0\0\0cdr", 7), other("\x03\0\0\0txt", 7);
   ExpectRefusedSource(
       Write("a.mcap", Replace(Bytes("ros2_no_chunks"), text, other)),
-      {"a.mcap: has messages encoded as txt", "only those of ROS"});
+      {"a.mcap: has messages encoded as txt; only those of ROS"});
   const std::string lz4("\x03\0\0\0lz4", 7), lz9("\x03\0\0\0lz9", 7);
   ExpectRefusedSource(
       Write("a.mcap", Replace(Bytes("ros1_lz4"), lz4, lz9)),
