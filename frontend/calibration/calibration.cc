@@ -284,9 +284,11 @@ CalibrationResult Calibrate(
   steps.Collect(path, scale, known != nullptr ? *known : first);
   constexpr int kMinViews = 100;
   if (result.views < kMinViews) {
-    result.reason = "the camera hardly moved: only " +
+    result.reason = "the camera hardly moved or was lost: only " +
                     std::to_string(result.views) + " landmark views in " +
-                    std::to_string(result.keyframes) + " keyframes";
+                    std::to_string(result.keyframes) + " keyframes of " +
+                    std::to_string(path.size()) +
+                    " tracked frames; rgbd_odometry says which frames are lost";
     return result;
   }
   steps.SolveWithFirstCamera();

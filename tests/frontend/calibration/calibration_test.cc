@@ -334,6 +334,14 @@ TEST(CalibrationTest, AKnownLengthHasToMakeSense) {
   expect("1000,1000.1,1", "hardly moved");
 }
 
+TEST(CalibrationTest, SaysThatTheCameraMayHaveBeenLost) {
+  const Mapped dark({}, RgbdCamera());
+  EXPECT_EQ(dark.Calibrate().reason,
+            "the camera hardly moved or was lost: only 0 landmark views in 0 "
+            "keyframes of 0 tracked frames; rgbd_odometry says which frames "
+            "are lost");
+}
+
 TEST(CalibrationTest, AKnownLengthDoesNotSpanLostFrames) {
   CalibrationData data;
   data.timestamps = {0.0, 1.0};
