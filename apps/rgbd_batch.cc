@@ -39,9 +39,10 @@ DEFINE_string(
     "table has their median and range; empty: the whole sequence");
 DEFINE_int32(repeats, 1,
              "runs of each combination; only times differ between them");
-DEFINE_string(settings, "",
-              "flag file for all runs of the program; paths in it must be "
-              "absolute; empty: default settings");
+DEFINE_string(
+    settings, "",
+    "flag file for all runs of the program; paths of inputs in it must be "
+    "absolute; empty: default settings");
 DEFINE_string(output, "", "folder for the results, created if missing");
 DEFINE_bool(
     resume, false,
