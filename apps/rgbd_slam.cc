@@ -70,6 +70,9 @@ void LoadMaps(const ProgramSettings& settings, Slam* slam) {
         "--localise_only does not change the map; leave out --save_map");
   }
   for (const std::string& folder : folders) {
+    if (std::count(folders.begin(), folders.end(), folder) > 1) {
+      throw InputError("--load_map: '" + folder + "' appears twice");
+    }
     Located("--load_map",
             [&] { slam->Load(LoadMap(folder), settings.localise_only); });
   }

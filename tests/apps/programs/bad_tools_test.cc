@@ -153,6 +153,7 @@ TEST_F(BadInputTest, Maps) {
           {"--localise_only", "--localise_only needs --load_map"},
           {"--load_map=nowhere",
            "--load_map: nowhere: no such folder; choose a "},
+          {"--load_map=map,map", "--load_map: 'map' appears twice"},
           {"--load_map=nowhere --calibrate", "--calibrate changes the camera"},
           {"--max_pairs=0", "max_pairs must be at least 1"},
           {"--save_map={dir}/out", "--save_map: must be another folder than "},
