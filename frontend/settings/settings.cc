@@ -64,25 +64,22 @@ NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
           }};
 }
 
-// The last pose, constant motion, or a row of InitialGuesses().
+// The last pose, or a row of InitialGuesses().
 std::vector<std::string> GuessNames() {
-  std::vector<std::string> names = {"last", "velocity"};
+  std::vector<std::string> names = {"last"};
   for (const InitialGuess& row : InitialGuesses()) names.emplace_back(row.name);
   return names;
 }
 
-NamedSetting GuessByName(TrackerOptions* tracking, OdometryOptions* odometry) {
+NamedSetting GuessByName(TrackerOptions* tracking) {
   return {[=]() -> std::string {
-            if (tracking->initial_guess != nullptr) {
-              return std::string(tracking->initial_guess->name);
-            }
-            return odometry->predict_velocity ? "velocity" : "last";
+            return tracking->initial_guess != nullptr
+                       ? std::string(tracking->initial_guess->name)
+                       : "last";
           },
           [=](const std::string& name) {
-            odometry->predict_velocity = name == "velocity";
             tracking->initial_guess = FindNamed(InitialGuesses(), name);
-            if (tracking->initial_guess == nullptr && name != "last" &&
-                name != "velocity") {
+            if (tracking->initial_guess == nullptr && name != "last") {
               throw UnknownName("initial guess", name, GuessNames());
             }
           }};
@@ -240,7 +237,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "frame is visible",
        &tracking->min_seen_share},
       {"initial_guess", kTracking, "where the solver starts in a frame",
-       GuessByName(tracking, odometry), GuessNames()},
+       GuessByName(tracking), GuessNames()},
       {"on_lost", kTracking,
        "what to do with lost frames; except with stop, they are also searched "
        "for among earlier reference frames",

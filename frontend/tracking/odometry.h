@@ -42,9 +42,6 @@ struct OdometryOptions {
   double min_reference_share = 0.5;
   double max_flow_px = 60.0;
 
-  // Whether tracking starts from the last pose moved on at constant velocity.
-  bool predict_velocity = false;
-
   // What to do with frames whose motion is not found.
   LostPolicy on_lost = LostPolicy::kNewSegment;
 

@@ -100,7 +100,7 @@ def test_settings_are_those_of_the_program(
     settings = {
         "tracker": "features",  # with pixel costs, some settings have no effect
         "cost": "reprojection_depth", "loss": "huber", "scale": "mad",
-        "robust_schedule": "direct", "initial_guess": "velocity",
+        "robust_schedule": "direct", "initial_guess": "ransac",
         "on_lost": "hold", "depth_noise": "nguyen", "assembly": "per_match",
         "max_features": 200,
     }

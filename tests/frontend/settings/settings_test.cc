@@ -67,14 +67,16 @@ TEST(SettingTableTest, NamesReachTheOptions) {
   };
   set("robust_schedule", "direct");
   set("assembly", "per_match");
-  set("initial_guess", "velocity");
+  set("initial_guess", "ransac");
   set("on_lost", "hold");
   EXPECT_EQ(settings.estimator.options.schedule, RobustSchedule::kDirect);
   EXPECT_EQ(settings.estimator.options.assembly, Assembly::kPerMatch);
-  EXPECT_TRUE(settings.odometry.predict_velocity);
+  EXPECT_EQ(settings.tracking.initial_guess->name, "ransac");
   EXPECT_EQ(settings.odometry.on_lost, LostPolicy::kHold);
-  set("initial_guess", "ransac");
-  EXPECT_FALSE(settings.odometry.predict_velocity);
+  set("initial_guess", "last");
+  EXPECT_EQ(settings.tracking.initial_guess, nullptr);
+  ExpectInputError([&] { set("initial_guess", "velocity"); },
+                   {"initial guess", "'velocity'", "last", "ransac"});
   ExpectInputError([&] { set("scale", "iqr"); }, {"scale", "'iqr'", "mad"});
 }
 
