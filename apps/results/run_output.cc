@@ -9,6 +9,7 @@
 #include "apps/results/frame_tables.h"
 #include "apps/results/inertial_output.h"
 #include "apps/results/run_summary.h"
+#include "apps/results/tracking_pictures.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
@@ -16,7 +17,6 @@
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/fusion/mesh_file.h"
 #include "frontend/fusion/mesh_fusion.h"
-#include "frontend/tracking/tracking_pictures.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,4 +1,4 @@
-#include "frontend/tracking/tracking_pictures.h"
+#include "apps/results/tracking_pictures.h"
 
 #include <Eigen/Core>
 #include <algorithm>
