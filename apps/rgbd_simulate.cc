@@ -12,6 +12,7 @@
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/stop_signal.h"
+#include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/settings/settings.h"
 #include "frontend/simulation/synthetic_dataset.h"
@@ -129,6 +130,24 @@ ProgramInfo Info(SimulateSettings* settings) {
           {Table(settings)}};
 }
 
+// Throws InputError for values that would have no effect, or another one.
+void RequireSense(const SimulateSettings& settings) {
+  const SimulateSettings usual;
+  const SyntheticImuOptions& imu = settings.imu_options;
+  if (!settings.imu && (settings.imu_gyro_bias != usual.imu_gyro_bias ||
+                        settings.imu_accel_bias != usual.imu_accel_bias ||
+                        imu.rate_hz != usual.imu_options.rate_hz ||
+                        imu.noise != usual.imu_options.noise)) {
+    throw InputError(
+        "--imu_rate, --imu_noise, --imu_gyro_bias and --imu_accel_bias need "
+        "--imu");
+  }
+  // Beyond a full turn the angle would be taken for another one.
+  if (std::abs(settings.registration_turn) > 180.0) {
+    throw InputError("--registration_turn must be at most 45 degrees");
+  }
+}
+
 // The sequence, with its inertial sensor if there shall be one.
 std::unique_ptr<FrameSource> Simulate(const SimulateSettings& settings,
                                       const SyntheticOptions& options,
@@ -149,6 +168,7 @@ std::unique_ptr<FrameSource> Simulate(const SimulateSettings& settings,
 
 int Main(const SimulateSettings& settings, const ProgramInfo& info) {
   RequireFlag("output", settings.output);
+  RequireSense(settings);
   SyntheticOptions options = settings.options;
   options.registration_error = Rigid3d::FromRotationVector(
       {0.0, settings.registration_turn * M_PI / 180.0, 0.0},

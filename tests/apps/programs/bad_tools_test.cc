@@ -92,6 +92,9 @@ TEST_F(BadInputTest, Simulate) {
           {"--depth_delay=0.02", "the depth delay of a"},
           {"--registration_shift=2", "the registration error of a"},
           {"--registration_turn=nan", "the registration error of a"},
+          {"--registration_turn=400", "must be at most 45 degrees"},
+          {"--imu_gyro_bias=0.1", "--imu_gyro_bias and --imu_accel_bias need"},
+          {"--imu_noise=false", "--imu_accel_bias need --imu"},
       });
 }
 
