@@ -7,6 +7,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "apps/results/calibration_output.h"
 #include "apps/run/run_tracking.h"
@@ -73,8 +74,9 @@ void LoadMaps(const ProgramSettings& settings, Slam* slam) {
     if (std::count(folders.begin(), folders.end(), folder) > 1) {
       throw InputError("--load_map: '" + folder + "' appears twice");
     }
-    Located("--load_map",
-            [&] { slam->Load(LoadMap(folder), settings.localise_only); });
+    KeyframeMap map = Located("--load_map", [&] { return LoadMap(folder); });
+    Located("--load_map: " + folder,
+            [&] { slam->Load(std::move(map), settings.localise_only); });
   }
 }
 
