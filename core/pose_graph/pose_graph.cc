@@ -276,6 +276,11 @@ void PoseGraph::AddEdge(const RelativePose& edge,
 
 std::vector<MotionMatrix> PoseGraph::MarginalCovariances(
     const std::vector<int>& poses) const {
+  for (const int pose : poses) {
+    if (pose >= 0 && pose < num_poses()) continue;
+    throw InputError(
+        Format("pose graph: there is no pose %d among %d", pose, num_poses()));
+  }
   return GraphProblem(graph_, 1.0).MarginalCovariances(poses);
 }
 

@@ -139,6 +139,7 @@ class PoseGraph {
   // Covariances of [omega (rad), C (m)], omega about the axes of the camera, C
   // in the world, after a successful Solve; zero for fixed poses. All edges
   // count as independent: see OvercountingFactor. Empty if not computable.
+  // Throws InputError for a pose that does not exist.
   std::vector<MotionMatrix> MarginalCovariances(
       const std::vector<int>& poses) const;
 

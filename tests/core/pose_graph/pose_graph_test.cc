@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <limits>
+#include <string>
 
 #include "core/pose_graph/graph_problem.h"
 #include "robust/m_estimator.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
 
@@ -93,6 +95,13 @@ TEST(PoseGraphTest, FixedPosesDoNotDiluteTheFactor) {
   ASSERT_EQ(twice.size(), 2u);
   EXPECT_EQ(twice[0], twice[1]);
   EXPECT_GT(twice[0](0, 0), 0.0);
+  for (const int none : {-1, 4}) {
+    ExpectInputError(
+        [&] {
+          graph.MarginalCovariances({0, none});
+        },
+        {"there is no pose " + std::to_string(none)});
+  }
 }
 
 TEST(PoseGraphTest, ExactEdgesBringPosesBack) {
