@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "core/util/format.h"
@@ -31,10 +32,12 @@ bool IsCovariance(const MotionMatrix& matrix) {
 std::string KeyframeMap::Check() const {
   const std::string wrong_camera = camera.Check();
   if (!wrong_camera.empty()) return "camera: " + wrong_camera;
-  std::set<int> ids;
+  std::map<int, int> segments;  // by the ids of keyframes
   for (const Keyframe& keyframe : keyframes) {
     const std::string name = "keyframe " + std::to_string(keyframe.id) + ": ";
-    if (!ids.insert(keyframe.id).second) return name + "appears twice";
+    if (!segments.emplace(keyframe.id, keyframe.segment).second) {
+      return name + "appears twice";
+    }
     if (!IsMotion(keyframe.world_from_cam)) {
       return name + "the pose must be finite and its quaternion of unit length";
     }
@@ -49,12 +52,15 @@ std::string KeyframeMap::Check() const {
     const std::string name =
         Format("edge from keyframe %d to %d: ", edge.ref, edge.cur);
     for (const int id : {edge.ref, edge.cur}) {
-      if (ids.count(id) == 0) {
+      if (segments.count(id) == 0) {
         return name + "there is no keyframe " + std::to_string(id);
       }
     }
     if (edge.ref == edge.cur) {
       return name + "it must connect two different keyframes";
+    }
+    if (segments[edge.ref] != segments[edge.cur]) {
+      return name + "its keyframes are of two segments; give both the same";
     }
     if (!IsMotion(edge.cur_from_ref)) {
       return name +
@@ -67,7 +73,9 @@ std::string KeyframeMap::Check() const {
   std::set<int> with_up;
   for (const MapUp& up : ups) {
     const std::string name = Format("up of keyframe %d: ", up.keyframe);
-    if (ids.count(up.keyframe) == 0) return name + "there is no such keyframe";
+    if (segments.count(up.keyframe) == 0) {
+      return name + "there is no such keyframe";
+    }
     if (!with_up.insert(up.keyframe).second) return name + "appears twice";
     if (!(std::abs(up.in_cam.norm() - 1.0) <= kMaxLengthError)) {
       return name + "it must be finite and of unit length";

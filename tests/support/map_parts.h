@@ -49,7 +49,7 @@ inline KeyframeMap NoiseMap(int keyframes, int seed) {
           {id, (rotation.normalized() * Eigen::Vector3d::UnitY()).normalized(),
            0.01 / 3.0});
     }
-    if (i == 0) continue;
+    if (i % 3 == 0) continue;  // begins a segment
     const MotionMatrix root = MotionMatrix::Identity() / (3.0 + i) +
                               MotionMatrix::Constant(1e-5 * M_PI);
     const MotionMatrix covariance = root * root.transpose() / 7e5;

@@ -40,6 +40,8 @@ TEST(KeyframeMapTest, SaysWhatIsWrong) {
        "edge from keyframe -3 to 5: there is no keyframe 5"},
       {[](KeyframeMap* map) { map->edges[0].ref = map->edges[0].cur; },
        "edge from keyframe 4 to 4: it must connect two different keyframes"},
+      {[](KeyframeMap* map) { map->keyframes[0].segment = 7; },
+       "edge from keyframe -3 to 4: its keyframes are of two segments"},
       {[](KeyframeMap* map) {
          map->edges[1].cur_from_ref.rotation.w() = INFINITY;
        },
