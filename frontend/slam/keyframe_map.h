@@ -27,13 +27,13 @@ struct MapUp {
 struct KeyframeMap {
   Camera camera;                    // of all keyframes
   std::vector<Keyframe> keyframes;  // compressed, in any order
-  std::vector<MapEdge> edges;       // in any order
+  std::vector<MapEdge> edges;       // each within a segment, in any order
   std::vector<MapUp> ups;           // at most one of a keyframe, in any order
 
   // A one-line description of an error, or empty: duplicate ids, images of
   // another size than the camera's, edges or directions of missing keyframes,
-  // values that are not finite, covariances that are not symmetric and positive
-  // definite.
+  // edges between two segments, values that are not finite, covariances that
+  // are not symmetric and positive definite.
   std::string Check() const;
 
   // A one-line description of a difference between `other` and the camera of
