@@ -49,7 +49,7 @@ std::vector<Setting> SettingTable(ExportOptions* options) {
 
 WrittenExport ExportRun(const FinishedRun& run, const std::string& format,
                         ExportOptions options) {
-  const ExportFormat& row = RowOf(ExportFormats(), "format", format);
+  const ExportFormat row = RowOf(ExportFormats(), "format", format);
   // VoxelCloud::Thin needs at least 8 points.
   if (options.max_points < 8) {
     throw InputError("--max_points must be 8 or more");

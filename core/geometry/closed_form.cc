@@ -32,9 +32,9 @@ void PairMoments::Add(const Vector3d& target, const Vector3d& source,
 
 NearestRotation::NearestRotation(const Matrix3d& m)
     : rotation(Matrix3d::Identity()), stiffness(0.0) {
-  if (!m.allFinite()) return;  // the SVD would leave its results unset
   const Eigen::JacobiSVD<Matrix3d> svd(
       m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.info() != Eigen::Success) return;  // m is not finite
   const double sign =
       (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   rotation = svd.matrixU() * Vector3d(1, 1, sign).asDiagonal() *

@@ -89,7 +89,7 @@ void KeyframeGraph::FitProportionalError() {
       squares.push_back(SquaredDistance(pair.edge, CovarianceOf(pair.edge)));
     }
     return squares.size() >= kMinPairsForProportionalError &&
-           Median(squares) > kMedianSquare;
+           QuantileInPlace(&squares, 0.5) > kMedianSquare;
   };
   proportional_error_ = 0.0;
   if (!disagree()) return;
