@@ -142,8 +142,8 @@ void RequireSense(const SimulateSettings& settings) {
         "--imu_rate, --imu_noise, --imu_gyro_bias and --imu_accel_bias need "
         "--imu");
   }
-  // Beyond a full turn the angle would be taken for another one.
-  if (std::abs(settings.registration_turn) > 180.0) {
+  // The rotation made of it no longer shows how many turns were asked for.
+  if (std::abs(settings.registration_turn) > 45.0) {
     throw InputError("--registration_turn must be at most 45 degrees");
   }
 }
