@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,9 +15,9 @@
 
 namespace rgbd_pose {
 
-// A cost function for any number of problems and threads. A residual or
-// derivative that is not finite fails the evaluation, so Ceres rejects the step
-// instead of writing a warning to stderr.
+// A cost function for any number of problems and threads. A cost or derivative
+// that is not finite fails the evaluation, so Ceres rejects the step instead of
+// writing a warning to stderr.
 class SharedCostFunction final : public ceres::CostFunction {
  public:
   explicit SharedCostFunction(std::unique_ptr<ceres::CostFunction> function)
@@ -40,7 +41,9 @@ class SharedCostFunction final : public ceres::CostFunction {
       }
       return true;
     };
-    if (!is_finite(residuals, num_residuals())) return false;
+    const double square = std::inner_product(
+        residuals, residuals + num_residuals(), residuals, 0.0);
+    if (!std::isfinite(square)) return false;
     if (jacobians == nullptr) return true;
     for (size_t i = 0; i < parameter_block_sizes().size(); ++i) {
       const int size = num_residuals() * parameter_block_sizes()[i];

@@ -3,6 +3,8 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/sized_cost_function.h>
 
+#include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -55,9 +57,12 @@ class AnalyticFunction<Factor, BlockList<B...>> final
   template <size_t... I>
   bool Evaluate(double const* const* x, double* r, double** jacobians,
                 std::index_sequence<I...> /*blocks*/) const {
-    if (jacobians == nullptr) return factor_.Residual(B::Read(x[I])..., r);
+    if (jacobians == nullptr) {
+      return factor_.Residual(B::Read(x[I])..., r) && HasCost(r);
+    }
     std::tuple<TangentJacobian<Factor::kRows, B>...> by;
-    if (!factor_.Jacobian(B::Read(x[I])..., r, &std::get<I>(by)...)) {
+    if (!factor_.Jacobian(B::Read(x[I])..., r, &std::get<I>(by)...) ||
+        !HasCost(r)) {
       return false;
     }
     const auto lift = [&](auto block, const auto& by_block, size_t i) {
@@ -67,6 +72,13 @@ class AnalyticFunction<Factor, BlockList<B...>> final
     };
     (lift(B(), std::get<I>(by), I), ...);
     return true;
+  }
+
+  // Where the cost is infinite, Ceres 2.2 would write to stderr.
+  static bool HasCost(const double* r) {
+    return std::isfinite(
+        Eigen::Map<const Eigen::Matrix<double, Factor::kRows, 1>>(r)
+            .squaredNorm());
   }
 
   const Factor factor_;

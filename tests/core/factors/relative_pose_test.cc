@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
+#include "core/factors/factor.h"
 #include "core/factors/sampler.h"
 
 namespace rgbd_pose {
@@ -47,6 +49,22 @@ TEST(RelativePoseFactorTest, IsTheMahalanobisDistance) {
     const double squared = SquaredMahalanobisDistance(
         cur.Inverse() * ref, measured, (S.transpose() * S).inverse());
     EXPECT_NEAR(r.squaredNorm(), squared, 1e-9 * squared);
+  }
+}
+
+// Ceres 2.2 writes to stderr where a cost that was evaluated is infinite.
+TEST(RelativePoseFactorTest, AnInfiniteCostCannotBeEvaluated) {
+  const std::unique_ptr<ceres::CostFunction> function(
+      MakeFactor(RelativePoseFactor{Rigid3d(), MotionMatrix::Identity()}));
+  for (const double metres : {1e100, 1e200}) {
+    const Rigid3d far(Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0});
+    const PoseVector ref = PoseVectorOf(Rigid3d()), cur = PoseVectorOf(far);
+    double const* const blocks[] = {ref.data(), cur.data()};
+    double r[6], J[6 * 7];
+    double* jacobians[] = {nullptr, J};
+    const bool has_cost = metres < 1e150;
+    EXPECT_EQ(function->Evaluate(blocks, r, nullptr), has_cost) << metres;
+    EXPECT_EQ(function->Evaluate(blocks, r, jacobians), has_cost) << metres;
   }
 }
 
