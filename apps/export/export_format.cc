@@ -45,7 +45,6 @@ const std::vector<ExportFormat>& ExportFormats() {
       {"colmap", "colmap", ExportColmap},
       {"nerfstudio", "nerfstudio", ExportNerfstudio},
       {"mcap", "run.mcap", ExportMcap},
-      {"ros2", "run_ros2.mcap", ExportRos2},
       {"kitti", "kitti", ExportKitti},
       {"tum", "trajectory_tum.txt", ExportTum},
       {"g2o", "poses.g2o", ExportG2o},

@@ -109,7 +109,6 @@ std::string ExportColmap(const FinishedRun& run, const ExportOptions& options);
 std::string ExportNerfstudio(const FinishedRun& run,
                              const ExportOptions& options);
 std::string ExportMcap(const FinishedRun& run, const ExportOptions& options);
-std::string ExportRos2(const FinishedRun& run, const ExportOptions& options);
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);

@@ -40,19 +40,18 @@ std::string RecordOf(McapOpcode opcode, const std::string& content) {
 
 }  // namespace
 
-McapWriter::McapWriter(const std::string& profile, std::string encoding)
-    : encoding_(std::move(encoding)),
-      bytes_(std::string(kMcapMagic) +
+McapWriter::McapWriter()
+    : bytes_(std::string(kMcapMagic) +
              RecordOf(kMcapHeader,
-                      Pack(profile, "rgbd_pose " RGBD_POSE_VERSION))) {}
+                      Pack("ros2", "rgbd_pose " RGBD_POSE_VERSION))) {}
 
 void McapWriter::AddTopic(const std::string& topic, const McapSchema& schema) {
   Channel& channel = channels_[topic];
   channel.id = static_cast<uint16_t>(channels_.size());
   channel.schema = RecordOf(
-      kMcapSchema, Pack(channel.id, schema.type, schema.encoding, schema.text));
+      kMcapSchema, Pack(channel.id, schema.type, "ros2msg", schema.text));
   channel.record = RecordOf(
-      kMcapChannel, Pack(channel.id, channel.id, topic, encoding_, kNoText));
+      kMcapChannel, Pack(channel.id, channel.id, topic, "cdr", kNoText));
 }
 
 void McapWriter::Write(const std::string& topic, uint64_t time,

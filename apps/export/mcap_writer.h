@@ -8,17 +8,15 @@ namespace rgbd_pose {
 
 // How the messages of a topic are to be read.
 struct McapSchema {
-  std::string type;      // its name
-  std::string encoding;  // of `text`: jsonschema, ros2msg
-  std::string text;
+  std::string type;  // its name
+  std::string text;  // its definition (ros2msg)
 };
 
-// Builds an mcap file (mcap.dev/spec) with uncompressed chunks, schemas,
-// indexes, statistics and checksums.
+// Builds an mcap file (mcap.dev/spec) of messages of ROS 2 in CDR, with
+// uncompressed chunks, schemas, indexes, statistics and checksums.
 class McapWriter {
  public:
-  // `profile`: ros2, or empty. `encoding`: of all messages, json or cdr.
-  McapWriter(const std::string& profile, std::string encoding);
+  McapWriter();
 
   bool HasTopic(const std::string& topic) const {
     return channels_.count(topic) != 0;
@@ -47,7 +45,6 @@ class McapWriter {
 
   void CloseChunk();
 
-  std::string encoding_;
   std::string bytes_;                        // of the file, not yet taken
   uint64_t taken_ = 0;                       // number of bytes
   uint32_t checksum_ = 0;                    // of these

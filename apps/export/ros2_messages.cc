@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "apps/export/export_format.h"
+#include "core/util/format.h"
 #include "frontend/bags/cdr_writer.h"
 #include "frontend/files/jpeg_codec.h"
 #include "frontend/files/png_codec.h"
@@ -49,6 +50,34 @@ std::string PathMessage(double stamp, const Trajectory& path,
     WritePose(parent_from_world * pose.world_from_cam, &writer);
   }
   return writer.message();
+}
+
+std::string CloudMessage(double stamp, const std::vector<ColoredPoint>& points,
+                         const std::string& parent,
+                         const Rigid3d& parent_from_world) {
+  constexpr uint8_t kFloat32 = 7;
+  const auto count = static_cast<uint32_t>(points.size());
+  CdrWriter writer;
+  writer.Header(stamp, parent).Number(uint32_t{1}).Number(count);
+  uint32_t point_size = 0;
+  writer.Number(uint32_t{4});
+  for (const char* const field : {"x", "y", "z", "rgb"}) {
+    writer.Text(field).Number(point_size).Number(kFloat32).Number(uint32_t{1});
+    point_size += sizeof(float);
+  }
+  writer.Number(uint8_t{0}).Number(point_size).Number(count * point_size);
+  std::string bytes;
+  for (const ColoredPoint& point : points) {
+    const Eigen::Vector3d position =
+        parent_from_world * point.position.cast<double>();
+    for (const double x : position) {
+      AppendLittleEndian(static_cast<float>(x), &bytes);
+    }
+    // The bytes of a number that has red above green above blue.
+    bytes.append(point.color.rbegin(), point.color.rend());
+    bytes.push_back('\0');
+  }
+  return writer.Bytes(bytes).Number(uint8_t{1}).message();
 }
 
 std::string OdometryMessage(const CameraState& state, const std::string& parent,

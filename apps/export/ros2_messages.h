@@ -1,11 +1,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/export/camera_states.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "frontend/frame/frame.h"
+#include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
 
@@ -20,6 +22,11 @@ std::string TransformMessage(double stamp, const std::string& parent,
 std::string PathMessage(double stamp, const Trajectory& path,
                         const std::string& parent,
                         const Rigid3d& parent_from_world);
+
+// sensor_msgs/PointCloud2, with colours as RViz and PCL take them.
+std::string CloudMessage(double stamp, const std::vector<ColoredPoint>& points,
+                         const std::string& parent,
+                         const Rigid3d& parent_from_world);
 
 // nav_msgs/Odometry. Covariances are those of [position, rotation about the
 // axes of the parent] and of [linear, angular] in the axes of the camera.

@@ -60,7 +60,8 @@ std::string Ros2Recording::Finish() {
   WriteLast();
   WaitForWriter(0);
   const Trajectory& path = states_.path();
-  if (!path.empty()) writer_.WritePath(RosTime(last_->timestamp), path);
+  if (!path.empty())
+    writer_.WritePath("/path", RosTime(last_->timestamp), path);
   file_.Append(writer_.Finish());
   file_.Publish();
   return Format("recorded in %s: %zu poses in the frame odom, %zu images\n",

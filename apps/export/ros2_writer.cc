@@ -55,6 +55,12 @@ constexpr Definition kDefinitions[] = {
      "string distortion_model\nfloat64[] d\nfloat64[9] k\nfloat64[9] r\n"
      "float64[12] p\nuint32 binning_x\nuint32 binning_y\n"
      "sensor_msgs/RegionOfInterest roi\n"},
+    {"sensor_msgs/PointField",
+     "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
+    {"sensor_msgs/PointCloud2",
+     "std_msgs/Header header\nuint32 height\nuint32 width\n"
+     "sensor_msgs/PointField[] fields\nbool is_bigendian\n"
+     "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
     {"sensor_msgs/CompressedImage",
      "std_msgs/Header header\nstring format\nuint8[] data\n"},
 };
@@ -79,7 +85,7 @@ void AppendDefinition(std::string_view name, std::set<std::string_view>* done,
 
 // The schema of a message such as nav_msgs/Odometry, with those in it.
 McapSchema Ros2Schema(const std::string& name) {
-  McapSchema schema = {name, "ros2msg", ""};
+  McapSchema schema = {name, ""};
   schema.type.insert(name.find('/'), "/msg");
   std::set<std::string_view> done;
   AppendDefinition(name, &done, &schema.text);
@@ -90,12 +96,18 @@ McapSchema Ros2Schema(const std::string& name) {
 
 Ros2Writer::Ros2Writer(std::string parent, const Rigid3d& level_from_world)
     : parent_(std::move(parent)),
-      parent_from_world_(UprightFromLevel() * level_from_world),
-      file_("ros2", "cdr") {}
+      parent_from_world_(UprightFromLevel() * level_from_world) {}
 
-void Ros2Writer::WritePath(double time, const Trajectory& path) {
-  Write("/path", "nav_msgs/Path", time,
+void Ros2Writer::WritePath(const std::string& topic, double time,
+                           const Trajectory& path) {
+  Write(topic, "nav_msgs/Path", time,
         PathMessage(time, path, parent_, parent_from_world_));
+}
+
+void Ros2Writer::WriteCloud(double time,
+                            const std::vector<ColoredPoint>& points) {
+  Write("/cloud", "sensor_msgs/PointCloud2", time,
+        CloudMessage(time, points, parent_, parent_from_world_));
 }
 
 void Ros2Writer::WriteState(const CameraState& state) {

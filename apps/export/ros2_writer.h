@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/export/mcap_writer.h"
 #include "apps/export/ros2_messages.h"
@@ -16,7 +17,9 @@ class Ros2Writer {
   explicit Ros2Writer(std::string parent,
                       const Rigid3d& level_from_world = Rigid3d());
 
-  void WritePath(double time, const Trajectory& path);
+  void WritePath(const std::string& topic, double time, const Trajectory& path);
+  // In the axes of the world.
+  void WriteCloud(double time, const std::vector<ColoredPoint>& points);
   // The transform and the odometry of a pose.
   void WriteState(const CameraState& state);
   void WriteImages(double time, const Camera& camera,

@@ -76,15 +76,14 @@ Motions MotionsOf(const FinishedRun& run) {
 
 }  // namespace
 
-Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by) {
+Trajectory TimedPath(const FinishedRun& run) {
   Trajectory path;
   for (size_t i = 0; i < run.segments.size(); ++i) {
     if (run.segments[i] == run.segments[0]) path.push_back(run.trajectory[i]);
   }
   if (!IsRosTime(path[0].timestamp) || !IsRosTime(path.back().timestamp)) {
     throw InputError((run.folder.empty() ? "" : "--run: " + run.folder + ": ") +
-                     asked_by +
-                     " has times from 1970 to 2038; export the poses with "
+                     "ROS has times from 1970 to 2038; export the poses with "
                      "--to=tum");
   }
   return path;

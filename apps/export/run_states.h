@@ -11,9 +11,9 @@
 
 namespace rgbd_pose {
 
-// The poses of the first segment of a run. Throws InputError, which names what
-// asks for it, if their times are not from 1970 to 2038, as ROS has them.
-Trajectory TimedPath(const FinishedRun& run, const std::string& asked_by);
+// The poses of the first segment of a run. Throws InputError if their times are
+// not from 1970 to 2038, as ROS has them.
+Trajectory TimedPath(const FinishedRun& run);
 
 // The keyframes of a run's map; nothing without a map.
 std::optional<CsvTable> KeyframesOf(const FinishedRun& run);

@@ -273,7 +273,7 @@ TEST_F(BadInputTest, Export) {
           {"--output={dir}/mine", "{dir}/mine is a file; a folder is needed"},
           {"--to=tum --output={seq}/rgb.txt",
            "--output={seq}/rgb.txt: is in the recording's own folder {seq}"},
-          {"--to=ros2 --dataset={dir}/mine --output={dir}/mine",
+          {"--to=mcap --dataset={dir}/mine --output={dir}/mine",
            "--output={dir}/mine: is the recording itself"},
           {"--run={dir}/loop", "--run: {dir}/loop: no such folder"},
           {"--output={dir}/loop",

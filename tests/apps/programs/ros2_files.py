@@ -12,7 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True
 from export_test import check, data_lines, inverse, matrix_of, numbers, product, run, same
-from mcap_export_test import read_mcap
+from mcap_file import read_mcap
 
 CAMERA = 'camera_color_optical_frame'
 UPRIGHT = [[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 0]]  # from x right, y down
@@ -72,7 +72,7 @@ def read_message(bytes_, definitions):
 
 def read_topics(file):
     """Topics with the names of their types, definitions and messages: (ns, content)."""
-    return read_mcap(file, b'ros2', (b'cdr', b'ros2msg'), read_definitions, read_message)
+    return read_mcap(file, read_definitions, read_message)
 
 
 def time_of(header):
@@ -132,10 +132,12 @@ def check_velocity(before, state, after, seconds):
         check(max(abs(a * seconds - b) for a, b in zip(said, expected)) < 1e-8, name, said)
 
 
-def check_run(result, file, parent, images):
+def check_run(result, file, parent, images, also=()):
+    """Against the run in a folder; `also`: further topics and their types. Returns what
+    each topic says."""
     topics = read_topics(file)
     expected = {
-        '/path': 'nav_msgs/msg/Path', '/tf': 'tf2_msgs/msg/TFMessage',
+        **dict(also), '/path': 'nav_msgs/msg/Path', '/tf': 'tf2_msgs/msg/TFMessage',
         '/odom': 'nav_msgs/msg/Odometry', COLOR: 'sensor_msgs/msg/CompressedImage',
         DEPTH: 'sensor_msgs/msg/CompressedImage'}
     for topic in (COLOR, DEPTH):
@@ -172,6 +174,7 @@ def check_run(result, file, parent, images):
         check(min(state['of_twist']) > 0, 'covariance of velocity')
     check_covariances(result, list(path.values()), states)
     check_images(said, images)
+    return said
 
 
 def check_covariances(result, path, states):
