@@ -55,6 +55,24 @@ Frame FrameAt(Recording* recording, int index) {
   return recording->Read(from_start);
 }
 
+// Frames of a part in their order: reading backwards would decode each again.
+Recording SliceOf(const Recording& recording, const py::slice& slice) {
+  py::ssize_t first = 0, stop = 0, step = 0, frames = 0;
+  if (!slice.compute(LengthOf(recording), &first, &stop, &step, &frames)) {
+    throw py::error_already_set();
+  }
+  if (step < 1) throw py::index_error("frames are read forward: step >= 1");
+  if (frames == 0) throw py::index_error("this part has no frames");
+  FrameRange range;
+  range.first = static_cast<int>(first);
+  range.last = static_cast<int>(stop) - 1;
+  range.step = static_cast<int>(step);
+  return Recording(recording.path(),
+                   [open = recording.open(), range](bool keep_color) {
+                     return PartOf(open(keep_color), range);
+                   });
+}
+
 Recording OpenRecording(const py::object& path, const py::object& camera,
                         const std::string& source, const std::string& frames,
                         const py::object& associations,
@@ -216,7 +234,8 @@ void BindAnyRecording(py::module_* module) {
 A recording of any kind that the programs read: `for frame in recording` gives
 one Frame after the other; each is decoded on access, with the GIL released.
 Each loop reads the recording again. If the frames are known in advance (not
-those of bags), len(recording) is their number and recording[i] reads one.
+those of bags), len(recording) is their number, recording[i] reads one, and
+recording[100:400:2] is the recording of a part.
 
 path: a folder or a file.
 camera: a Camera, a preset or a calibration file; None: the camera stored in the
@@ -251,6 +270,7 @@ recording does not specify. Raises InputError for unreadable input.)");
   // Not by the length, which may be unknown.
   recording.def("__bool__", [](const Recording&) { return true; });
   recording.def("__getitem__", &FrameAt, py::arg("index"));
+  recording.def("__getitem__", &SliceOf, py::arg("index"));
   const auto property = PropertiesOf(&recording);
   property(
       "camera", [](const Recording& self) { return self.source().camera(); },

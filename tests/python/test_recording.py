@@ -191,6 +191,17 @@ def test_has_a_length_and_frames_by_number(sequence, whole):
     for index in (3, -4):
         with pytest.raises(IndexError, match=f"{index}: there are 3 frames"):
             recording[index]
+    for part, numbers in (
+        (recording[1:], [4, 6]), (recording[::2], [2, 6]), (recording[-1:], [6]),
+        (recording[1:][:1], [4]),
+    ):
+        assert len(part) == len(numbers)
+        for i, (frame, number) in enumerate(zip(part, numbers)):
+            np.testing.assert_array_equal(frame.gray, whole[number].gray)
+            assert frame.index == i and frame.timestamp == whole[number].timestamp
+    for part, error in ((slice(None, None, -1), "forward"), (slice(3, 3), "no frames")):
+        with pytest.raises(IndexError, match=error):
+            recording[part]
     # A loop is not disturbed.
     loop = iter(recording)
     assert next(loop).index == 0 and recording[2].index == 2

@@ -32,9 +32,10 @@ METHODS = [
 
 
 def from_docstring(function):
-    """The signature that pybind11 writes as a docstring's first line."""
-    line = function.__doc__.split("\n")[0]
-    return ast.parse(f"def {line}: ...").body[0]
+    """The signatures that pybind11 writes: in the first line, or numbered."""
+    lines = re.findall(r"^[0-9]+\. (.*)$", function.__doc__, re.MULTILINE)
+    lines = lines or function.__doc__.split("\n")[:1]
+    return [ast.parse(f"def {line}: ...").body[0] for line in lines]
 
 
 def parameters(function):
@@ -56,10 +57,10 @@ def returned(function):
     return name if name in CLASSES else None
 
 
-def assert_same_signature(stub, function):
+def assert_same_signatures(overloads, function):
     actual = from_docstring(function)
-    assert parameters(stub) == parameters(actual)
-    assert returned(stub) == returned(actual)
+    assert [parameters(f) for f in overloads] == [parameters(f) for f in actual]
+    assert [returned(f) for f in overloads] == [returned(f) for f in actual]
 
 
 def test_package_is_typed():
@@ -74,17 +75,22 @@ def test_names_are_complete():
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_functions(name):
-    assert_same_signature(FUNCTIONS[name], getattr(rgbd_pose, name))
+    assert_same_signatures([FUNCTIONS[name]], getattr(rgbd_pose, name))
 
 
 @pytest.mark.parametrize("class_name, name", METHODS)
 def test_methods(class_name, name):
-    stub = stubs(CLASSES[class_name].body, ast.FunctionDef)[name]
+    overloads = [
+        node for node in CLASSES[class_name].body
+        if isinstance(node, ast.FunctionDef) and node.name == name
+    ]
     function = inspect.getattr_static(getattr(rgbd_pose, class_name), name)
-    is_static = [ast.unparse(d) for d in stub.decorator_list]
-    assert is_static == ["staticmethod"] * isinstance(function, staticmethod)
+    is_static = ["staticmethod"] * isinstance(function, staticmethod)
+    for stub in overloads:
+        decorators = [ast.unparse(d) for d in stub.decorator_list]
+        assert decorators == is_static + ["overload"] * (len(overloads) > 1)
     function = getattr(function, "__func__", function)
-    assert_same_signature(stub, function)
+    assert_same_signatures(overloads, function)
 
 
 @pytest.mark.parametrize("name", CLASSES)
