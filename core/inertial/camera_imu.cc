@@ -24,6 +24,13 @@ constexpr double kMostOfOne = 30.0;
 constexpr size_t kSameInARow = 3;
 constexpr double kFastRate = 1.0;
 
+// Errors of a calibration, rad and s, that are clear if they are larger and
+// have so many standard deviations. The axes of a gyroscope may differ from
+// those of the accelerometer by 2 %.
+constexpr double kUsualTurn = 0.02;
+constexpr double kUsualDelay = 0.005;
+constexpr double kClearSigmas = 4.0;
+
 // The samples as they were measured from which a covered interval is
 // interpolated, and one more on either side unless there is a gap.
 std::vector<ImuSample> SamplesAround(const ImuBuffer& buffer, double from,
@@ -75,6 +82,19 @@ bool HasSpike(const std::vector<ImuSample>& samples) {
   return false;
 }
 
+// Whether a sample adds nothing to those before: a gyroscope that hangs repeats
+// its last value. So does an accelerometer, but for longer, as drivers copy the
+// values of a slow one to all samples of a fast gyroscope.
+bool IsRepeated(const ImuSample& sample, const std::vector<ImuSample>& before) {
+  if (before.empty()) return false;
+  if (sample.gyro == before.back().gyro) return true;
+  for (auto earlier = before.rbegin();
+       earlier != before.rend() && earlier->accel == sample.accel; ++earlier) {
+    if (sample.stamp - earlier->stamp > ImuBuffer::kMaxGap) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 CameraImu::CameraImu(const ImuSensor& sensor)
@@ -104,8 +124,17 @@ void CameraImu::Add(const std::vector<ImuSample>& samples) {
     }
     const std::vector<ImuSample>& before = buffer_.samples();
     if (!before.empty() && !(sample.stamp > before.back().stamp)) continue;
-    buffer_.Add(sample);
+    if (IsRepeated(sample, before)) {
+      repeated_until_ = sample.stamp;
+    } else {
+      buffer_.Add(sample);
+    }
   }
+}
+
+bool CameraImu::is_frozen() const {
+  return repeated_until_.has_value() &&
+         *repeated_until_ - buffer_.samples().back().stamp > ImuBuffer::kMaxGap;
 }
 
 void CameraImu::ForgetBefore(double stamp) {
@@ -232,6 +261,10 @@ std::string CameraImu::doubt() const {
         "deviations; check its mounting, delay and axes",
         std::sqrt(contradiction_));
   }
+  if (is_frozen()) {
+    return Format("it has repeated the same sample for %.2g s: it is frozen",
+                  *repeated_until_ - buffer_.samples().back().stamp);
+  }
   if (learnt_ >= kMinLearnt) return "";
   const std::vector<ImuSample>& samples = buffer_.samples();
   if (samples.size() < 2) {
@@ -249,6 +282,18 @@ std::string CameraImu::doubt() const {
 
 ImuCalibration CameraImu::Calibration() const {
   return {Rigid3d(cam_from_imu_turn(), position()), delay(), noise_};
+}
+
+std::optional<ImuCalibration> CameraImu::Correction() const {
+  const Eigen::Vector3d turned = state_.tail<3>();
+  const double in_sigmas =
+      turned.dot(covariance_.bottomRightCorner<3, 3>().ldlt().solve(turned));
+  const bool is_turned =
+      turned.norm() > kUsualTurn && in_sigmas > kClearSigmas * kClearSigmas;
+  const bool is_late =
+      std::abs(state_[3]) > std::max(kUsualDelay, kClearSigmas * delay_sigma());
+  if (!is_trusted() || !(is_turned || is_late)) return std::nullopt;
+  return Calibration();
 }
 
 }  // namespace rgbd_pose

@@ -56,7 +56,8 @@ class CameraImu {
   }
 
   // Adds samples with the stamps and axes of the sensor. One that is not finite
-  // or not later than the one before is left out.
+  // or not later than the one before is left out, and so is one that repeats
+  // the one before: a sensor that hangs leaves a gap.
   void Add(const std::vector<ImuSample>& samples);
 
   // Forgets what is not needed for motions from a time (s, the camera's clock)
@@ -82,7 +83,8 @@ class CameraImu {
   bool is_trusted() const {
     return learnt_ >= kMinLearnt && contradiction_ <= kMostContradiction;
   }
-  // Why it is not trusted, in a line; empty if it is.
+  // Why it is not trusted, or that its last samples are of no use, in a line;
+  // empty if all is well.
   std::string doubt() const;
 
   // The number of turns that were seen.
@@ -90,6 +92,10 @@ class CameraImu {
 
   // The calibration with what was learnt of delay and mounting.
   ImuCalibration Calibration() const;
+
+  // That calibration if the turns clearly contradict the one given, of which
+  // small errors are usual; else nothing.
+  std::optional<ImuCalibration> Correction() const;
 
   // Where the sensor is, in the axes of the camera, m.
   const Eigen::Vector3d& position() const { return cam_from_imu_.translation; }
@@ -121,6 +127,9 @@ class CameraImu {
   CameraTurn TurnOf(const PreintegratedMotion& motion,
                     const ByState& by_state) const;
 
+  // Whether the sensor has repeated itself for longer than a usual gap.
+  bool is_frozen() const;
+
   Eigen::Quaterniond cam_from_imu_turn() const;
   double delay() const { return delay_s_ + state_[3]; }
 
@@ -128,6 +137,7 @@ class CameraImu {
   Rigid3d cam_from_imu_;
   double delay_s_;
   ImuBuffer buffer_;
+  std::optional<double> repeated_until_;  // the last such sample, s
   State state_ = State::Zero();
   StateMatrix covariance_;
   // What else can be wrong is an unknown 3x3 matrix times the turn: the

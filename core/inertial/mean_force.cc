@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/inertial/camera_imu.h"
 #include "core/inertial/imu_buffer.h"
 
 namespace rgbd_pose {
@@ -27,6 +28,11 @@ void ForceMeter::Add(const std::vector<ImuSample>& samples) {
     if (!samples_.empty() && !(sample.stamp > samples_.back().stamp)) continue;
     samples_.push_back(sample);
   }
+}
+
+void ForceMeter::CorrectBy(const CameraImu* imu) {
+  if (imu == nullptr) return;
+  sensor_.calibration = imu->Correction().value_or(sensor_.calibration);
 }
 
 bool ForceMeter::AddUp(const Trajectory& path, size_t from, size_t to,

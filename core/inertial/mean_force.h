@@ -11,6 +11,8 @@
 
 namespace rgbd_pose {
 
+class CameraImu;
+
 // What held a camera against gravity about a moment, on average.
 struct MeanForce {
   size_t at = 0;           // the pose of the path at the moment
@@ -48,6 +50,10 @@ class ForceMeter {
   // Adds samples, with the stamps and axes of the sensor. One that is not
   // finite or not later than the one before is left out.
   void Add(const std::vector<ImuSample>& samples);
+
+  // Takes delay and mounting from a gyroscope beside it, if turns have shown
+  // that those given are wrong. Without one (null) nothing changes.
+  void CorrectBy(const CameraImu* imu);
 
   const ImuSensor& sensor() const { return sensor_; }
   const std::vector<ImuSample>& samples() const { return samples_; }

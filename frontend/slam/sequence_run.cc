@@ -62,6 +62,7 @@ void SequenceRun::DoubtNext(const std::string& reason) {
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   if (slam_ != nullptr) FinishSlam();
   results_.trajectory = Path();
+  if (meter_.has_value()) meter_->CorrectBy(odometry().imu());
   results_.gravity = Gravity();
   if (odometry().imu() != nullptr) results_.imu = *odometry().imu();
   if (ground_truth != nullptr && !results_.trajectory.empty()) {

@@ -232,7 +232,10 @@ void Slam::Finish() {
   is_previous_late_ = false;
   search_.reset();  // too late to be of use
   ApplyPendingUpdates(std::numeric_limits<int>::max(), &unused);
-  if (meter_.has_value()) MeasureUps();
+  if (meter_.has_value()) {
+    meter_->CorrectBy(odometry_.imu());
+    MeasureUps();
+  }
   Apply(worker_.Submit([this] { return mapper_.Finish(); }).get(), &unused);
   if (meter_.has_value()) FindGravity();
 }

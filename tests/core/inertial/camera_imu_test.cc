@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/util/units.h"
@@ -14,6 +15,9 @@ namespace {
 
 // Errors of turns that images show, rad.
 constexpr double kTurnSigma = 5e-4;
+
+// From one sample to the next, as one without news is left out, rad/s or m/s^2.
+constexpr double kNews = 1e-13;
 
 CameraImu Taught(CameraWithImu* world, const ImuCalibration& calibration,
                  double seconds = 10.0) {
@@ -110,23 +114,58 @@ TEST(CameraImuTest, LearnsBiasDelayAndMounting) {
   EXPECT_LT(chi2 / kSeeds, 1.0);
 }
 
-// A sensor that is frozen, or whose axes are swapped, is not believed.
+// Small errors of a calibration are usual, so that it stays as it is.
+TEST(CameraImuTest, CorrectsACalibrationThatIsClearlyWrong) {
+  CameraWithImu world;
+  EXPECT_FALSE(Taught(&world, world.truth).Correction().has_value());
+  ImuCalibration wrong = world.truth;
+  wrong.delay_s = *world.truth.delay_s - 0.012;
+  ASSERT_TRUE(Taught(&world, wrong).Correction().has_value());
+  wrong = world.truth;
+  wrong.cam_from_imu->rotation =
+      Rigid3d::FromRotationVector({0.03, -0.03, 0.03}, {0, 0, 0}).rotation *
+      wrong.cam_from_imu->rotation;
+  const auto corrected = Taught(&world, wrong).Correction();
+  ASSERT_TRUE(corrected.has_value());
+  EXPECT_LT(corrected->cam_from_imu->rotation.angularDistance(
+                world.truth.cam_from_imu->rotation),
+            0.1 / kDegreesPerRadian);
+}
+
+// A sensor whose axes are swapped is not believed.
 TEST(CameraImuTest, DoubtsASensorThatContradictsTheImages) {
-  for (const bool is_frozen : {false, true}) {
+  CameraWithImu world;
+  CameraImu imu({world.truth, true});
+  std::vector<ImuSample> samples = world.Samples(-0.2, 12.0);
+  for (ImuSample& sample : samples) {
+    std::swap(sample.gyro.x(), sample.gyro.z());
+  }
+  imu.Add(samples);
+  world.Teach(0.0, 3.0, kTurnSigma, &imu);
+  EXPECT_FALSE(imu.is_trusted());
+  EXPECT_NE(imu.doubt().find("contradicts"), std::string::npos);
+}
+
+// A sensor that hangs repeats its last sample, from the start or long after it
+// was believed; or only one of its parts does.
+TEST(CameraImuTest, SaysNothingOnceTheSensorHangs) {
+  for (const auto& [part, working] :
+       {std::pair(&ImuSample::gyro, 0.0), std::pair(&ImuSample::gyro, 5.0),
+        std::pair(&ImuSample::accel, 5.0)}) {
     CameraWithImu world;
     CameraImu imu({world.truth, true});
-    std::vector<ImuSample> samples = world.Samples(-0.2, 12.0);
-    for (ImuSample& sample : samples) {
-      if (is_frozen) {
-        sample.gyro = {0.1, 0.2, 0.3};
-      } else {
-        std::swap(sample.gyro.x(), sample.gyro.z());
+    std::vector<ImuSample> samples = world.Samples(-0.2, 8.0);
+    for (size_t i = 1; i < samples.size(); ++i) {
+      if (samples[i].stamp - *world.truth.delay_s > working) {
+        samples[i].*part = samples[i - 1].*part;
       }
     }
     imu.Add(samples);
-    world.Teach(0.0, 3.0, kTurnSigma, &imu);
-    EXPECT_FALSE(imu.is_trusted());
-    EXPECT_NE(imu.doubt().find("contradicts"), std::string::npos);
+    world.Teach(0.0, 8.0, kTurnSigma, &imu);
+    EXPECT_EQ(imu.Turn(4.0, 4.1).has_value(), working > 4.0);
+    EXPECT_FALSE(imu.Turn(5.0, 5.2).has_value());
+    EXPECT_FALSE(imu.Turn(6.0, 6.1).has_value());
+    EXPECT_NE(imu.doubt().find("frozen"), std::string::npos) << imu.doubt();
   }
 }
 
@@ -143,9 +182,10 @@ TEST(CameraImuTest, BelievesOnlyAxesThatTurnsHaveTested) {
   for (int i = -100; i < 2000; ++i) {
     const double t = 0.005 * i;
     const Eigen::Vector3d rate =
-        kRate * (t < 5.0 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX());
+        (kRate + kNews * i) *
+        (t < 5.0 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX());
     samples.push_back(
-        {t + delay, cam_from_imu.conjugate() * rate, Eigen::Vector3d::Zero()});
+        {t + delay, cam_from_imu.conjugate() * rate, {0, 0, 9.81 + kNews * i}});
   }
   imu.Add(samples);
   const auto sigma = [&](double from) {
@@ -249,8 +289,9 @@ TEST(CameraImuTest, NoIntervalIsTooShortToShowASpike) {
   CameraImu imu(sensor);
   std::vector<ImuSample> samples;
   for (int i = 0; i < 200; ++i) {
-    samples.push_back(
-        {kStep * i, kRate * Eigen::Vector3d::UnitX(), {0, 0, 9.81}});
+    samples.push_back({kStep * i,
+                       (kRate + kNews * i) * Eigen::Vector3d::UnitX(),
+                       {0, 0, 9.81 + kNews * i}});
   }
   samples[100].gyro.x() += kSpike;
   imu.Add(samples);
@@ -281,12 +322,28 @@ TEST(CameraImuTest, FastShakingBesideAGapIsNoSpike) {
     const double t = kStep * i;
     if (t > kGapFrom && t < kGapTo) continue;
     const double rate = kRate * std::sin(2.0 * M_PI * kHertz * t);
-    samples.push_back({t, rate * Eigen::Vector3d::UnitX(), {0, 0, 9.81}});
+    samples.push_back(
+        {t, rate * Eigen::Vector3d::UnitX(), {0, 0, 9.81 + kNews * i}});
   }
   imu.Add(samples);
   EXPECT_FALSE(imu.Turn(0.4, 0.6).has_value());
   for (double from = 0.71; from < 1.8; from += 0.013) {
     EXPECT_TRUE(imu.Turn(from, from + 0.03).has_value()) << from;
+  }
+}
+
+// A driver that joins an accelerometer of 50 samples a second and a gyroscope
+// of 200 by copies.
+TEST(CameraImuTest, CopiedAccelerationsAreNoFault) {
+  CameraWithImu world;
+  CameraImu imu({world.truth, true});
+  std::vector<ImuSample> samples = world.Samples(-0.2, 3.0);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    samples[i].accel = samples[i - i % 4].accel;
+  }
+  imu.Add(samples);
+  for (double t = 0.0; t < 2.0; t += 0.1) {
+    EXPECT_TRUE(imu.Turn(t, t + 0.1).has_value()) << t;
   }
 }
 

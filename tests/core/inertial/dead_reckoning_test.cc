@@ -106,6 +106,7 @@ TEST(DeadReckoningTest, KnowsTheVelocityOfTheCamera) {
 TEST(DeadReckoningTest, AnUntestedTurnMakesThePositionUncertain) {
   constexpr double kGravity = 9.81;  // m/s^2
   constexpr double kSeen = 2.0;      // s
+  constexpr double kNews = 1e-13;    // from sample to sample
   // The camera stands still, but then the gyroscope claims that it turns.
   const Eigen::Vector3d rate(0.0, 0.0, 1.0);
   const double delay = *CameraWithImu().truth.delay_s;
@@ -115,11 +116,11 @@ TEST(DeadReckoningTest, AnUntestedTurnMakesThePositionUncertain) {
   std::vector<ImuSample> samples;
   for (int i = -100; i < 700; ++i) {
     const double t = 0.005 * i;
-    samples.push_back(
-        {t + delay,
-         cam_from_imu.conjugate() *
-             (t < kSeen ? Eigen::Vector3d::Zero() : rate),
-         cam_from_imu.conjugate() * Eigen::Vector3d(0.0, -kGravity, 0.0)});
+    samples.push_back({t + delay,
+                       cam_from_imu.conjugate() *
+                           ((t < kSeen ? kNews * i : 1.0 + kNews * i) * rate),
+                       cam_from_imu.conjugate() *
+                           Eigen::Vector3d(0.0, -kGravity - kNews * i, 0.0)});
   }
   imu.Add(samples);
   DeadReckoning path;

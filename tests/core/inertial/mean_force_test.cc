@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "core/inertial/camera_imu.h"
+#include "core/inertial/gravity_estimate.h"
+#include "tests/support/camera_with_imu.h"
 #include "tests/support/imu_path.h"
 
 namespace rgbd_pose {
@@ -52,6 +55,36 @@ TEST(ForceMeterTest, TakesOutHowTheCameraTurnsAndAccelerates) {
   for (const MeanForce& force : forces) {
     EXPECT_LT(shaken.ErrorOf(force), 0.03) << force.at;
   }
+}
+
+// A mounting that is wrong by 17 degrees would turn gravity by as much.
+TEST(ForceMeterTest, TakesTheMountingThatTurnsHaveShown) {
+  CameraWithImu world;
+  const std::vector<ImuSample> samples = world.Samples(-0.2, 10.2);
+  ImuCalibration wrong = world.truth;
+  wrong.cam_from_imu->rotation =
+      Rigid3d::FromRotationVector({0.2, -0.2, 0.1}, {0, 0, 0}).rotation *
+      wrong.cam_from_imu->rotation;
+  CameraImu imu({wrong, true});
+  imu.Add(samples);
+  world.Teach(0.0, 10.0, 5e-4, &imu);
+  Trajectory path;
+  for (int k = 0; k <= 600; ++k) {
+    path.push_back({k / 60.0, world.WorldFromCam(k / 60.0)});
+  }
+  ForceMeter meter({wrong, true});
+  meter.Add(samples);
+  const auto error = [&] {
+    const GravityEstimate gravity = EstimateGravity(meter.Along(path));
+    EXPECT_TRUE(gravity.ok()) << gravity.refusal;
+    return (gravity.up + world.hand.gravity.normalized()).norm();
+  };
+  meter.CorrectBy(nullptr);
+  EXPECT_GT(error(), 0.1);
+  // The mounting is found to 0.1 degrees, and gravity with a bias.
+  constexpr double kTolerance = 0.01;
+  meter.CorrectBy(&imu);
+  EXPECT_LT(error(), kTolerance);
 }
 
 // Poses at unequal times are as good.
