@@ -104,6 +104,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
+  // After a frame that is doubted, tracking goes on from the one before it; a
+  // guess would then be of another interval.
+  std::optional<State> before;
+  if (!doubt_.empty() && cur_from_prev_guess == nullptr) before = state_;
   Begin(frame);
   {
     const StageTimer timer(&result.track_ms);
@@ -121,6 +125,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   Judge(&result);
   Learn(frame, result);
   KeepLast(frame, &result);
+  doubt_.clear();
+  if (before.has_value()) state_ = *std::move(before);
   return result;
 }
 
@@ -196,10 +202,9 @@ void Odometry::Judge(TrackedFrame* result) {
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(result);
-  const std::string doubt = std::exchange(doubt_, "");
-  if (!doubt.empty() && result->status == TrackingStatus::kOk) {
+  if (!doubt_.empty() && result->status == TrackingStatus::kOk) {
     result->status = TrackingStatus::kDegraded;
-    result->reason = doubt;
+    result->reason = doubt_;
   }
 }
 
@@ -228,7 +233,10 @@ void Odometry::KeepLast(const PreparedFrame& frame, TrackedFrame* result) {
     result->reason = "too quick a turn for images: inertial sensor only";
     return;
   }
-  if (result->status == TrackingStatus::kLost || result->is_reference) return;
+  if (result->status == TrackingStatus::kLost || result->is_reference ||
+      !doubt_.empty()) {
+    return;
+  }
   state_.last = {result->index,
                  state_.segment,
                  result->world_from_cam,

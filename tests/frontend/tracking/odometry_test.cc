@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "core/evaluation/consistency.h"
 #include "core/util/input_error.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/motion_error.h"
@@ -190,6 +192,38 @@ TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
   }
   EXPECT_GE(references, 5) << "the test is vacuous";
   EXPECT_GE(returns, 1) << "the test is vacuous";
+}
+
+// Of images that a driver has sent again, one is of another time than the
+// other.
+TEST(OdometryTest, FramesThatAreDoubtedAreNoReference) {
+  constexpr int kFrames = 60, kEvery = 5;
+  const SyntheticDataset dataset = Room("handheld", kFrames);
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  cv::Mat gray;
+  for (int i = 0; i < kFrames; ++i) {
+    Frame frame = dataset.Read(i);
+    const cv::Mat taken = frame.gray;
+    const bool is_repeated = i % kEvery == kEvery - 1;
+    if (is_repeated) {
+      frame.gray = gray;
+      odometry.DoubtNext("sent twice");
+    }
+    gray = taken;
+    const TrackedFrame tracked = odometry.Track(frame);
+    if (is_repeated) {
+      EXPECT_EQ(tracked.status, TrackingStatus::kDegraded) << i;
+      EXPECT_FALSE(tracked.is_reference) << i;
+      continue;
+    }
+    EXPECT_EQ(tracked.status, TrackingStatus::kOk) << i << tracked.reason;
+    if (i == 0) continue;
+    EXPECT_NE(tracked.reference % kEvery, kEvery - 1) << i;
+    const RelativePose& edge = tracked.edges.front();
+    const Rigid3d truth =
+        dataset.WorldFromCam(i).Inverse() * dataset.WorldFromCam(edge.ref);
+    EXPECT_LE(ChiSquare(edge, truth, {}), kWrongChiSquare) << i;
+  }
 }
 
 }  // namespace
