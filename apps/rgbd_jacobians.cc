@@ -1,5 +1,5 @@
 // Checks every hand-written Jacobian against automatic differentiation and
-// against central differences, over random motions and matches.
+// against central differences, over random motions, matches and pixels.
 
 #include <gflags/gflags.h>
 
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/jacobians/direct_jacobians.h"
 #include "apps/shell/program.h"
 #include "core/factors/check_factor.h"
 #include "core/geometry/motion.h"
@@ -17,10 +18,12 @@
 #include "costs/assembly/cost_blocks.h"
 #include "costs/cost_factory.h"
 #include "costs/cost_list.h"
+#include "costs/direct_cost_factory.h"
 #include "costs/factors/factor_list.h"
 #include "frontend/simulation/synthetic_matches.h"
 
-DEFINE_int32(samples, 1000, "random states for each cost and factor");
+DEFINE_int32(samples, 1000,
+             "random states for each cost and factor, or pixels");
 DEFINE_uint32(seed, 1, "seed of the samples");
 DEFINE_string(cost, "", "one cost, and no factor; empty: all");
 DEFINE_string(factor, "", "one factor, and no cost; empty: all");
@@ -33,8 +36,6 @@ namespace {
 constexpr double kJetTolerance = 1e-12;
 constexpr double kDifferenceTolerance = 1e-5;
 constexpr double kStep = 1e-5;
-
-using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
 Jacobian Evaluate(const ceres::CostFunction& function, const MotionVector& x) {
   const double* parameters[] = {x.data()};
@@ -99,6 +100,22 @@ bool IsWanted(const std::string& flag, const std::string& other,
   return flag == name || (flag.empty() && other.empty());
 }
 
+// Prints the lines of a cost. Returns whether it is right.
+bool PrintRows(const std::string& name, const Errors& autodiff,
+               const Errors& differences) {
+  bool passed = true;
+  for (int row = 0; row < autodiff.rows(); ++row) {
+    for (int half = 0; half < 2; ++half) {
+      const std::string part =
+          "row " + std::to_string(row) + (half == 0 ? ", angles" : ", centre");
+      passed =
+          PrintLine(name, part, autodiff(row, half), differences(row, half)) &&
+          passed;
+    }
+  }
+  return passed;
+}
+
 template <typename Residual>
 bool ReportCost() {
   if (!IsWanted(FLAGS_cost, FLAGS_factor, Residual::kName)) return true;
@@ -116,17 +133,18 @@ bool ReportCost() {
     jet = jet.max(ErrorsOf(by_hand, by_jet));
     differences = differences.max(ErrorsOf(by_hand, Differences(sample)));
   }
-  bool passed = true;
-  for (int row = 0; row < Residual::kRows; ++row) {
-    for (int half = 0; half < 2; ++half) {
-      passed = PrintLine(Residual::kName,
-                         "row " + std::to_string(row) +
-                             (half == 0 ? ", angles" : ", centre"),
-                         jet(row, half), differences(row, half)) &&
-               passed;
-    }
-  }
-  return passed;
+  return PrintRows(Residual::kName, jet, differences);
+}
+
+// A direct cost, by its only row, over pixels.
+bool ReportDirectCost(const std::string& name) {
+  if (!IsWanted(FLAGS_cost, FLAGS_factor, name)) return true;
+  constexpr int kMinPixels = 100;  // the other frame does not see all of them
+  const JacobianInThreeWays pixels = JacobiansOfPixels(
+      name, std::max(FLAGS_samples, kMinPixels), FLAGS_seed, kStep);
+  return PrintRows(
+      name, ErrorsOf(pixels.by_hand, pixels.by_autodiff).colwise().maxCoeff(),
+      ErrorsOf(pixels.by_hand, pixels.by_differences).colwise().maxCoeff());
 }
 
 // The larger of two numbers, or infinity if one of them is not finite.
@@ -172,6 +190,13 @@ bool ReportCosts(TypeList<Residuals...> /*types*/) {
   return passed;
 }
 
+// The names of all costs: over matches, then over pixels.
+std::vector<std::string> AllCostNames() {
+  std::vector<std::string> names = CostNames();
+  for (const std::string& name : DirectCostNames()) names.push_back(name);
+  return names;
+}
+
 std::vector<std::string> FactorNames() {
   std::vector<std::string> names;
   for (const ListedFactor& factor : ListedFactors()) {
@@ -180,20 +205,28 @@ std::vector<std::string> FactorNames() {
   return names;
 }
 
+// Throws InputError for a name that is neither empty nor one of `names`.
+void RequireKnown(const char* what, const std::string& name,
+                  const std::vector<std::string>& names) {
+  if (name.empty()) return;
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    throw UnknownName(what, name, names);
+  }
+}
+
 int Main() {
   if (FLAGS_samples < 1) throw InputError("--samples must be at least 1");
   if (FLAGS_cost.find('+') != std::string::npos) {
     throw InputError("--cost: must be one cost, or empty for all");
   }
-  if (!FLAGS_cost.empty()) MakeRobustCosts(FLAGS_cost, "none");
-  const std::vector<std::string> factors = FactorNames();
-  if (!FLAGS_factor.empty() && std::find(factors.begin(), factors.end(),
-                                         FLAGS_factor) == factors.end()) {
-    throw UnknownName("factor", FLAGS_factor, factors);
-  }
+  RequireKnown("cost", FLAGS_cost, AllCostNames());
+  RequireKnown("factor", FLAGS_factor, FactorNames());
   std::printf("%-20s %-24s %12s %12s\n", "cost or factor", "part", "autodiff",
               "differences");
   bool passed = ReportCosts(ResidualTypes());
+  for (const std::string& name : DirectCostNames()) {
+    passed = ReportDirectCost(name) && passed;
+  }
   for (const ListedFactor& factor : ListedFactors()) {
     passed = ReportFactor(factor) && passed;
   }
@@ -211,7 +244,7 @@ ProgramInfo Info() {
           "rgbd_jacobians --samples=1000",
           {{"What to check", {"cost", "factor", "samples", "seed"}}},
           /*settings=*/{},
-          {{"cost", CostNames()}, {"factor", FactorNames()}}};
+          {{"cost", AllCostNames()}, {"factor", FactorNames()}}};
 }
 
 }  // namespace
