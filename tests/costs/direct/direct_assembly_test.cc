@@ -3,12 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 #include <string>
 #include <tuple>
 
+#include "core/estimation/batch_loss.h"
 #include "core/estimation/estimator.h"
+#include "core/factors/motion_between.h"
+#include "core/factors/pose_manifold.h"
 #include "costs/direct_cost_factory.h"
+#include "costs/factors/pair.h"
 #include "robust/m_estimator.h"
 #include "tests/support/direct_pair.h"
 #include "tests/support/evaluate_problem.h"
@@ -55,6 +60,44 @@ TEST_P(DirectAssemblyTest, CostGradientAndHessianAreEqual) {
                   expected),
         kEqual);
   }
+}
+
+// Over the poses of two frames somewhere in the world.
+TEST_P(DirectAssemblyTest, APairFactorIsTheSameOverPoses) {
+  const auto& [cost_name, loss_name] = GetParam();
+  const auto cost = MakeDirectCost(cost_name, FewPoints());
+  const auto loss = ParseLoss(loss_name).Make(cost->degrees_of_freedom());
+  const Rigid3d motion = Pair().cur_from_prev;
+  cost->Bind(Pair().data());
+  cost->Associate(motion);
+  ScaledLoss scaled(loss.get(), 1.0, cost->information_factor());
+  const NormalEquations by_motion = EvaluateProblem(
+      cost.get(), Assembly::kPerMatch, LinearizationPoint(motion), &scaled,
+      MotionVector::Zero());
+  EXPECT_GT(by_motion.cost, 0.0);
+  const Rigid3d ref =
+      Rigid3d::FromRotationVector({0.3, -0.2, 0.5}, {1.0, 2.0, -0.5});
+  std::array<PoseVector, 2> poses = {PoseVectorOf(ref),
+                                     PoseVectorOf(ref * motion.Inverse())};
+  const PoseOf<double> ref_pose = PoseFrom(ref);
+  const MotionJacobians by(
+      ref_pose, MotionBetween(ref_pose, PoseFrom(ref * motion.Inverse())));
+  Eigen::Matrix<double, 6, 12> J;
+  J << by.by_ref, by.by_cur;
+
+  ceres::Problem problem;
+  for (PoseVector& pose : poses) AddPose(pose.data(), &problem);
+  problem.AddResidualBlock(
+      new PairFactor({MakeDirectCost(cost_name, FewPoints()),
+                      ParseLoss(loss_name).Make(cost->degrees_of_freedom())},
+                     Pair().data(), motion),
+      nullptr, poses[0].data(), poses[1].data());
+  constexpr double kEqual = 1e-10;  // sums of some hundred terms
+  EXPECT_LE(
+      SumsError(SumsOf(&problem),
+                ProblemSums{by_motion.cost, J.transpose() * by_motion.gradient,
+                            J.transpose() * by_motion.hessian * J}),
+      kEqual);
 }
 
 INSTANTIATE_TEST_SUITE_P(
