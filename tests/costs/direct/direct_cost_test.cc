@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -98,6 +99,33 @@ TEST_P(DirectCostTest, MasksAreAskedWithinTheImageOnly) {
     pair.cur.view.moving = &nothing;
     EXPECT_EQ(Count(pair, turn * pair.cur_from_prev), unmasked) << degrees;
   }
+}
+
+// Points are in all four halves of the image, and each half is told apart.
+TEST_P(DirectCostTest, WhatIsInAMaskTakesNoPart) {
+  DirectPair pair = SmallPair();
+  const size_t all = Count(pair, pair.cur_from_prev);
+  CellMask mask;
+  mask.columns = pair.cur.camera.width / CellMask::kCellPx;
+  const int rows = pair.cur.camera.height / CellMask::kCellPx;
+  pair.cur.view.moving = &mask;
+  const auto masked = [&](const auto& is_in) {
+    mask.cells.clear();
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < mask.columns; ++column) {
+        mask.cells.push_back(is_in(column, row));
+      }
+    }
+    const size_t left_out = all - Count(pair, pair.cur_from_prev);
+    EXPECT_GT(left_out, 0.2 * all);
+    return left_out;
+  };
+  const auto is_left = [&](int column, int /*row*/) {
+    return column < mask.columns / 2;
+  };
+  const auto is_above = [&](int /*column*/, int row) { return row < rows / 2; };
+  EXPECT_EQ(masked(is_left) + masked(std::not_fn(is_left)), all);
+  EXPECT_EQ(masked(is_above) + masked(std::not_fn(is_above)), all);
 }
 
 TEST_P(DirectCostTest, DepthHolesOfThePreviousFrameGiveNoPoints) {
