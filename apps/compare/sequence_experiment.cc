@@ -104,7 +104,8 @@ class SequenceExperiment {
             bar.Update(frame.index + 1);
             return true;
           });
-      Warn(DroppedFrames(*source, all[0]->damaged(), all[0]->repeated()));
+      Warn(DroppedFrames(*source, all[0]->damaged(),
+                         all[0]->odometry().repeated()));
       if (!stopped.empty()) {
         Warn({"stopped early: " + stopped});
         stopped_ = "Stopped early: " + stopped + "\n\n";

@@ -202,7 +202,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
         if (!signal.name().empty()) ended_by = signal.name();
         return ended_by.empty();
       });
-  Warn(DroppedFrames(*source, run->damaged(), run->repeated()));
+  Warn(DroppedFrames(*source, run->damaged(), run->odometry().repeated()));
   if (!stopped.empty()) return stopped;
   return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
 }

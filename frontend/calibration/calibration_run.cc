@@ -60,8 +60,8 @@ void MapFrames(Sequence* sequence, int threads,
                           });
   all->damaged = static_cast<int>(run->damaged().size());
   all->left_out = sequence->remarks;
-  for (const auto& line :
-       DroppedFrames(*sequence->source, run->damaged(), run->repeated())) {
+  for (const auto& line : DroppedFrames(*sequence->source, run->damaged(),
+                                        run->odometry().repeated())) {
     all->left_out.push_back(line);
   }
   run->Finish(sequence->GroundTruth());

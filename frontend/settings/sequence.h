@@ -7,9 +7,9 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/evaluation/truth_noise.h"
+#include "frontend/frame/repeated_images.h"
 #include "frontend/settings/settings.h"
 #include "frontend/sources/frame_source.h"
-#include "frontend/sources/repeated_images.h"
 
 namespace rgbd_pose {
 

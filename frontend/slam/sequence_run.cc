@@ -51,17 +51,10 @@ void SequenceRun::AddImu(const std::vector<ImuSample>& samples) {
   }
 }
 
-void SequenceRun::DoubtNext(const std::string& reason) {
-  if (slam_ != nullptr) {
-    slam_->DoubtNext(reason);
-  } else {
-    odometry_->DoubtNext(reason);
-  }
-}
-
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   if (slam_ != nullptr) FinishSlam();
   results_.trajectory = Path();
+  results_.repeated = odometry().repeated();
   if (meter_.has_value()) meter_->CorrectBy(odometry().imu());
   results_.gravity = Gravity();
   if (odometry().imu() != nullptr) results_.imu = *odometry().imu();
@@ -118,20 +111,11 @@ std::string TrackAll(FrameSource* source, int threads,
   FrameStream stream(
       source, [&first](const PreparedFrame& frame) { first.Prepare(frame); },
       threads, runs.front()->inputs().max_damaged);
-  RepeatedImages repeated;
   while (const std::optional<StreamedFrame> next = stream.Next()) {
-    const bool is_repeated = repeated.IsRepeated(next->frame);
-    for (SequenceRun* run : runs) {
-      if (is_repeated) {
-        run->DoubtNext("an image of it is that of the frame before");
-      }
-      run->Add(*next);
-    }
+    for (SequenceRun* run : runs) run->Add(*next);
     if (on_frame && !on_frame(next->frame)) break;
   }
-  for (SequenceRun* run : runs) {
-    run->SetLeftOut(stream.damaged(), repeated.counts());
-  }
+  for (SequenceRun* run : runs) run->SetDamaged(stream.damaged());
   return stream.stopped();
 }
 

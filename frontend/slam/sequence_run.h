@@ -19,7 +19,6 @@
 #include "frontend/slam/slam.h"
 #include "frontend/sources/frame_source.h"
 #include "frontend/sources/frame_stream.h"
-#include "frontend/sources/repeated_images.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
@@ -93,9 +92,6 @@ class SequenceRun {
   void UseImu(const ImuSensor& sensor);
   void AddImu(const std::vector<ImuSample>& samples);
 
-  // See Odometry::DoubtNext.
-  void DoubtNext(const std::string& reason);
-
   // The odometry that tracks the frames and can prepare frames in advance.
   const Odometry& odometry() const {
     return slam_ == nullptr ? *odometry_ : slam_->odometry();
@@ -110,14 +106,10 @@ class SequenceRun {
   // All frames so far, and those that could not be read.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
   const std::vector<std::string>& damaged() const { return results_.damaged; }
-  const RepeatedCounts& repeated() const { return results_.repeated; }
 
-  // Sets which frames of the source were left out or repeated. Call it after
-  // the last frame.
-  void SetLeftOut(const std::vector<std::string>& damaged,
-                  const RepeatedCounts& repeated) {
+  // Sets which frames of the source were left out. Call it after the last one.
+  void SetDamaged(const std::vector<std::string>& damaged) {
     results_.damaged = damaged;
-    results_.repeated = repeated;
   }
 
   // The current poses of the frames that were not lost.

@@ -105,9 +105,6 @@ class Slam {
                   const MotionMatrix* guess_covariance = nullptr);
   void Prepare(const PreparedFrame& frame) const { odometry_.Prepare(frame); }
 
-  // See Odometry::DoubtNext.
-  void DoubtNext(const std::string& reason) { odometry_.DoubtNext(reason); }
-
   // Waits for the mapping thread, optimises all keyframes once more, with what
   // is known of gravity, and turns the world upright (SlamSettings::upright).
   // Afterwards only the following functions may be called.

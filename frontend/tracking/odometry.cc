@@ -104,10 +104,11 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
-  // After a frame that is doubted, tracking goes on from the one before it; a
-  // guess would then be of another interval.
+  is_repeated_ = repeated_.IsRepeated(measured);
+  // Then tracking goes on from the frame before; a guess would be of another
+  // interval.
   std::optional<State> before;
-  if (!doubt_.empty() && cur_from_prev_guess == nullptr) before = state_;
+  if (is_repeated_ && cur_from_prev_guess == nullptr) before = state_;
   Begin(frame);
   {
     const StageTimer timer(&result.track_ms);
@@ -125,7 +126,6 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   Judge(&result);
   Learn(frame, result);
   KeepLast(frame, &result);
-  doubt_.clear();
   if (before.has_value()) state_ = *std::move(before);
   return result;
 }
@@ -202,9 +202,12 @@ void Odometry::Judge(TrackedFrame* result) {
   }
   // With ignored shutters, all of a fast camera's frames err so.
   if (options_.shutter == ShutterUse::kCamera) JudgeInflation(result);
-  if (!doubt_.empty() && result->status == TrackingStatus::kOk) {
-    result->status = TrackingStatus::kDegraded;
-    result->reason = doubt_;
+  if (is_repeated_ &&
+      (result->status == TrackingStatus::kOk || result->reason.empty())) {
+    result->reason = "an image of it is that of the frame before";
+    if (result->status == TrackingStatus::kOk) {
+      result->status = TrackingStatus::kDegraded;
+    }
   }
 }
 
@@ -234,7 +237,7 @@ void Odometry::KeepLast(const PreparedFrame& frame, TrackedFrame* result) {
     return;
   }
   if (result->status == TrackingStatus::kLost || result->is_reference ||
-      !doubt_.empty()) {
+      is_repeated_) {
     return;
   }
   state_.last = {result->index,

@@ -7,6 +7,7 @@
 #include "core/estimation/estimator.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
+#include "frontend/frame/repeated_images.h"
 #include "frontend/frame/stamp_jitter.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/carried_region.h"
@@ -85,10 +86,10 @@ class Odometry {
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);
 
-  // Says why what images show of the next frame is not to be relied on, such as
-  // that one was sent twice: it is `degraded` at best, with this reason, and
-  // nothing is learnt from it.
-  void DoubtNext(const std::string& reason) { doubt_ = reason; }
+  // How many frames had an image of the one before, under a new time stamp.
+  // They are `degraded` at best: nothing is learnt from them, and later frames
+  // are not tracked against them.
+  const RepeatedCounts& repeated() const { return repeated_.counts(); }
 
   // Precomputes everything about a frame that does not depend on other frames.
   // May be called from any thread while this object lives.
@@ -321,7 +322,9 @@ class Odometry {
   TrackingAttempts attempts_;  // at the last frame
   State state_;
   std::optional<InertialTracking> inertial_;  // nothing: no such sensor
-  std::string doubt_;                         // see DoubtNext
+  RepeatedImages repeated_;
+  bool is_repeated_ =
+      false;  // whether the frame has an image of the one before
   int num_frames_ = 0;
 };
 

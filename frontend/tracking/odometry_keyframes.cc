@@ -22,7 +22,7 @@ constexpr double kMaxReturnFlow = 0.5;
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   state_.is_lost = false;
   state_.is_unconnected = false;
-  if (!doubt_.empty()) return;
+  if (is_repeated_) return;
   tracker_->OnAccepted(state_.reference->reference.get(),
                        attempts_.mutable_kept());
   if (!NeedsNewReference()) return;
@@ -58,7 +58,7 @@ bool Odometry::NeedsNewReference() const {
 bool Odometry::TakeReference(const PreparedFrame& frame,
                              const Rigid3d& world_from_cam,
                              TrackedFrame* result) {
-  if (!doubt_.empty()) return false;
+  if (is_repeated_) return false;
   const StageTimer timer(&result->reference_ms);
   const bool is_lost = result->status == TrackingStatus::kLost;
   const bool was_tracked = state_.reference != nullptr && !is_lost;
@@ -119,7 +119,7 @@ bool Odometry::InsertKeyframe(const Keyframe& inserted) {
 }
 
 bool Odometry::MakeLastReference(TrackedFrame* result) {
-  if (!state_.last.has_value() || !doubt_.empty()) return false;
+  if (!state_.last.has_value() || is_repeated_) return false;
   const StageTimer timer(&result->reference_ms);
   std::string why_not;
   OdometryKeyframe* const added =

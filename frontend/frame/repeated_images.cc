@@ -1,4 +1,4 @@
-#include "frontend/sources/repeated_images.h"
+#include "frontend/frame/repeated_images.h"
 
 #include <cstring>
 
