@@ -84,10 +84,12 @@ bool HasSpike(const std::vector<ImuSample>& samples) {
 
 // Whether a sample adds nothing to those before: a gyroscope that hangs repeats
 // its last value. So does an accelerometer, but for longer, as drivers copy the
-// values of a slow one to all samples of a fast gyroscope.
+// values of a slow one to all samples of a fast gyroscope. Without one, zeros
+// stand for its values.
 bool IsRepeated(const ImuSample& sample, const std::vector<ImuSample>& before) {
   if (before.empty()) return false;
   if (sample.gyro == before.back().gyro) return true;
+  if (sample.accel.isZero(0.0)) return false;
   for (auto earlier = before.rbegin();
        earlier != before.rend() && earlier->accel == sample.accel; ++earlier) {
     if (sample.stamp - earlier->stamp > ImuBuffer::kMaxGap) return true;

@@ -333,17 +333,19 @@ TEST(CameraImuTest, FastShakingBesideAGapIsNoSpike) {
 }
 
 // A driver that joins an accelerometer of 50 samples a second and a gyroscope
-// of 200 by copies.
-TEST(CameraImuTest, CopiedAccelerationsAreNoFault) {
-  CameraWithImu world;
-  CameraImu imu({world.truth, true});
-  std::vector<ImuSample> samples = world.Samples(-0.2, 3.0);
-  for (size_t i = 0; i < samples.size(); ++i) {
-    samples[i].accel = samples[i - i % 4].accel;
-  }
-  imu.Add(samples);
-  for (double t = 0.0; t < 2.0; t += 0.1) {
-    EXPECT_TRUE(imu.Turn(t, t + 0.1).has_value()) << t;
+// of 200 by copies, and a gyroscope without an accelerometer.
+TEST(CameraImuTest, CopiedOrMissingAccelerationsAreNoFault) {
+  for (const double accelerometer : {0.0, 1.0}) {
+    CameraWithImu world;
+    CameraImu imu({world.truth, true});
+    std::vector<ImuSample> samples = world.Samples(-0.2, 3.0);
+    for (size_t i = 0; i < samples.size(); ++i) {
+      samples[i].accel = accelerometer * samples[i - i % 4].accel;
+    }
+    imu.Add(samples);
+    for (double t = 0.0; t < 2.0; t += 0.1) {
+      EXPECT_TRUE(imu.Turn(t, t + 0.1).has_value()) << accelerometer << t;
+    }
   }
 }
 
