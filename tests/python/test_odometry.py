@@ -270,10 +270,13 @@ def test_depth_of_any_byte_order(dataset, camera):
 
 def test_motion_guess(dataset, camera):
     odometry = rgbd_pose.Odometry(camera)
-    f = dataset[0]
-    odometry.track(f.gray, f.depth, motion_guess=np.eye(4))
-    tracked = odometry.track(f.gray, f.depth, motion_guess=np.eye(4))
-    assert tracked.status == "ok"
+    for f in (dataset[0], dataset[1]):
+        tracked = odometry.track(f.gray, f.depth, motion_guess=np.eye(4))
+        assert tracked.status == "ok"
+    # An image that is sent again shows no motion.
+    tracked = odometry.track(f.gray, f.depth)
+    assert tracked.status == "degraded"
+    assert tracked.reason == "an image of it is that of the frame before"
     with pytest.raises(rgbd_pose.InputError, match="motion_guess: has shape"):
         odometry.track(f.gray, f.depth, motion_guess=np.eye(3))
 

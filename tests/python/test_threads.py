@@ -124,7 +124,8 @@ def test_calls_of_one_odometry_wait_for_each_other(sequence, camera):
     for thread in threads:
         thread.join()
     assert sorted(f.index for f in frames) == list(range(20))
-    assert all(f.status == "ok" for f in frames)
+    # But for the first one, all show the frame before again.
+    assert sorted(f.status for f in frames) == ["degraded"] * 19 + ["ok"]
 
 
 def test_threads_share_a_loop_over_a_recording(sequence):

@@ -65,4 +65,13 @@ inline Frame Black(const Frame& frame) {
   return black;
 }
 
+// The same view once more. Images of a camera differ at least in a pixel, or
+// they have been sent again; here their first one is `number`.
+inline Frame TakenAgain(const Frame& frame, int number) {
+  Frame again = frame.Clone();
+  again.gray.at<uint8_t>(0, 0) = static_cast<uint8_t>(number);
+  again.depth.at<uint16_t>(0, 0) = static_cast<uint16_t>(number);
+  return again;
+}
+
 }  // namespace rgbd_pose

@@ -17,6 +17,7 @@
 #include "frontend/simulation/synthetic_dataset.h"
 #include "tests/support/motion_error.h"
 #include "tests/support/shutter_sequence.h"
+#include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
 namespace {
@@ -65,7 +66,7 @@ class Player {
 
   void Play(const std::vector<int>& order) {
     for (const int i : order) {
-      Frame frame = i < 0 ? Walk().black : Walk().frames[i];
+      Frame frame = TakenAgain(i < 0 ? Walk().black : Walk().frames[i], count);
       frame.timestamp = 1000.0 + (count++) / 30.0;
       frames.push_back(slam.Track(frame));
       shown.push_back(i);
