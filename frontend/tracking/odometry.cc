@@ -105,8 +105,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
   is_repeated_ = repeated_.IsRepeated(measured);
-  // Then tracking goes on from the frame before; a guess would be of another
-  // interval.
+  // Then, unless it is lost, tracking goes on from the frame before; a guess
+  // would be of another interval.
   std::optional<State> before;
   if (is_repeated_ && cur_from_prev_guess == nullptr) before = state_;
   Begin(frame);
@@ -126,7 +126,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& measured,
   Judge(&result);
   Learn(frame, result);
   KeepLast(frame, &result);
-  if (before.has_value()) state_ = *std::move(before);
+  if (before.has_value() && result.status != TrackingStatus::kLost) {
+    state_ = *std::move(before);
+  }
   return result;
 }
 

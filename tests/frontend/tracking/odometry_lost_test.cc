@@ -34,9 +34,10 @@ class LostPolicyTest : public ::testing::Test {
     Odometry odometry = MakeOdometry(here_->camera().camera, "tukey", options);
     std::vector<TrackedFrame> results;
     for (int i = 0; i < frames; ++i) {
-      Frame frame = i < 8    ? here_->Read(i)
-                    : i < 10 ? Black(here_->Read(7))
-                             : TakenAgain(elsewhere_->Read(0), i);
+      Frame frame =
+          i < 8 ? here_->Read(i)
+                : TakenAgain(
+                      i < 10 ? Black(here_->Read(7)) : elsewhere_->Read(0), i);
       frame.index = i;
       frame.timestamp = i < 8 ? i / 30.0 : 0.25 + 0.5 * (i - 8);
       results.push_back(odometry.Track(frame));
