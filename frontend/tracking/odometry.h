@@ -323,8 +323,7 @@ class Odometry {
   State state_;
   std::optional<InertialTracking> inertial_;  // nothing: no such sensor
   RepeatedImages repeated_;
-  bool is_repeated_ =
-      false;  // whether the frame has an image of the one before
+  bool is_repeated_ = false;  // whether repeated_ noticed the frame
   int num_frames_ = 0;
 };
 
