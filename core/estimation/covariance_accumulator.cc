@@ -177,11 +177,12 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
       sums.model_psi2 +=
           information * weight * p * limit / ChiSquared99(p) / scale2;
       const bool agrees = s <= limit * scale2;
-      const int match = term.cost->matches()[k];
-      if (match < 0) {
+      const int of_camera = term.cost->matches()[k];
+      if (of_camera < 0) {
         if (agrees && term.has_scale()) ++estimate->num_inliers;
         continue;
       }
+      const size_t match = term.first_match + of_camera;
       // A match that several costs use is an inlier if it agrees with all of
       // them. Losses steeper than least squares near 0 have weights above 1.
       const bool again = counted_[match];

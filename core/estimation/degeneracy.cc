@@ -72,38 +72,52 @@ WeakDirection WeakestOf(const MotionMatrix& covariance, int first) {
           covariance.middleCols<3>(first) * eigen.eigenvectors().col(2)};
 }
 
+// The information of a match on a small change of the motion of its camera:
+// points turn by `turn` and move by -`shift`, along the current axes.
+double InformationOn(const Match& match, const Eigen::Vector3d& point,
+                     double fx, const Eigen::Vector3d& turn,
+                     const Eigen::Vector3d& shift) {
+  const auto& [prev, cur] = match;
+  const Eigen::Vector3d moved = turn.cross(point) - shift;
+  const double z = point.z();
+  const Eigen::Vector2d across =
+      moved.head<2>() - moved.z() / z * point.head<2>();
+  const double px = std::hypot(prev.sigma_px, cur.sigma_px) * z / fx;
+  double known = across.squaredNorm() / (px * px);
+  if (prev.depth > 0.0 && cur.depth > 0.0) {
+    known += std::pow(moved.z(), 2) /
+             (std::pow(prev.sigma_depth, 2) + std::pow(cur.sigma_depth, 2));
+  }
+  return known;
+}
+
 // The share of the matches' information on a change of the motion that comes
 // from inliers, without the three that contribute most.
-double SupportedShare(const Correspondences& matches,
+double SupportedShare(const std::vector<CameraMatches>& cameras,
                       const MotionEstimate& estimate,
                       const MotionVector& change) {
-  const Camera& camera = matches.camera();
-  const Rigid3d& motion = estimate.cur_from_prev;
-  const Eigen::Vector3d turn = change.head<3>();
-  const Eigen::Vector3d shift = motion.rotation * change.tail<3>();
   double total = 0.0, agreeing = 0.0;
   std::array<double, 3> most = {};  // the largest first
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const auto& [prev, cur] = matches[i];
-    if (estimate.weights[i] == 0.0 || !(prev.depth + cur.depth > 0.0)) continue;
-    const Eigen::Vector3d point =
-        cur.depth > 0.0 ? matches.Point(cur) : motion * matches.Point(prev);
-    const Eigen::Vector3d moved = turn.cross(point) - shift;
-    const double z = point.z();
-    const Eigen::Vector2d across =
-        moved.head<2>() - moved.z() / z * point.head<2>();
-    const double px = std::hypot(prev.sigma_px, cur.sigma_px) * z / camera.fx;
-    double known = across.squaredNorm() / (px * px);
-    if (prev.depth > 0.0 && cur.depth > 0.0) {
-      known += std::pow(moved.z(), 2) /
-               (std::pow(prev.sigma_depth, 2) + std::pow(cur.sigma_depth, 2));
-    }
-    known *= estimate.weights[i];
-    total += known;
-    if (!estimate.is_inlier[i]) continue;
-    agreeing += known;
-    for (double& value : most) {
-      if (known > value) std::swap(known, value);
+  for (const auto& [matches, first, body_from_cam] : cameras) {
+    const Rigid3d motion = CameraMotion(body_from_cam, estimate.cur_from_prev);
+    const MotionVector of_camera =
+        CameraMotionJacobian(body_from_cam, estimate.cur_from_prev) * change;
+    const Eigen::Vector3d turn = of_camera.head<3>();
+    const Eigen::Vector3d shift = motion.rotation * of_camera.tail<3>();
+    for (size_t i = 0; i < matches->size(); ++i) {
+      const auto& [prev, cur] = (*matches)[i];
+      const double weight = estimate.weights[first + i];
+      if (weight == 0.0 || !(prev.depth + cur.depth > 0.0)) continue;
+      const Eigen::Vector3d point =
+          cur.depth > 0.0 ? matches->Point(cur) : motion * matches->Point(prev);
+      double known = weight * InformationOn((*matches)[i], point,
+                                            matches->camera().fx, turn, shift);
+      total += known;
+      if (!estimate.is_inlier[first + i]) continue;
+      agreeing += known;
+      for (double& value : most) {
+        if (known > value) std::swap(known, value);
+      }
     }
   }
   const double supported = agreeing - most[0] - most[1] - most[2];
@@ -159,12 +173,12 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   return result;
 }
 
-void JudgeWeakestRotation(const Correspondences& matches,
+void JudgeWeakestRotation(const std::vector<CameraMatches>& cameras,
                           const MotionEstimate& estimate, double by_pixels,
                           double spurious_information,
                           double max_standard_deviation, Degeneracy* result) {
   const double share =
-      SupportedShare(matches, estimate, result->weakest_rotation);
+      SupportedShare(cameras, estimate, result->weakest_rotation);
   const double known =
       by_pixels + share * std::max(result->known_rotation - by_pixels, 0.0);
   const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
@@ -176,20 +190,23 @@ void JudgeWeakestRotation(const Correspondences& matches,
       Describe(rotation, deviation, deviation <= max_standard_deviation);
 }
 
-double SpuriousInformation(const Correspondences& matches,
+double SpuriousInformation(const std::vector<CameraMatches>& cameras,
                            const std::vector<double>& weights) {
-  const double focal = matches.camera().fx;
   double sum = 0.0;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const auto& [prev, cur] = matches[i];
-    const Observation& o = prev.depth > 0.0 ? prev : cur;
-    double spurious = 1.0;  // without a depth there are only directions
-    if (o.depth > 0.0) {
-      const double along = o.sigma_depth * focal, across = o.depth * o.sigma_px;
-      const double a = along * along, b = across * across;
-      spurious = (a * a + b * b) / (2.0 * a * b);
+  for (const auto& [matches, first, body_from_cam] : cameras) {
+    const double focal = matches->camera().fx;
+    for (size_t i = 0; i < matches->size(); ++i) {
+      const auto& [prev, cur] = (*matches)[i];
+      const Observation& o = prev.depth > 0.0 ? prev : cur;
+      double spurious = 1.0;  // without a depth there are only directions
+      if (o.depth > 0.0) {
+        const double along = o.sigma_depth * focal;
+        const double across = o.depth * o.sigma_px;
+        const double a = along * along, b = across * across;
+        spurious = (a * a + b * b) / (2.0 * a * b);
+      }
+      sum += weights.empty() ? spurious : weights[first + i] * spurious;
     }
-    sum += weights.empty() ? spurious : weights[i] * spurious;
   }
   return sum;
 }

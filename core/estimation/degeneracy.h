@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/correspondences.h"
+#include "core/estimation/camera_mounting.h"
 #include "core/estimation/motion_estimate.h"
 #include "core/geometry/motion.h"
 
@@ -37,7 +37,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
 // turns until a wrong match, of a long lever, agrees by chance. `by_pixels`:
 // the part of known_rotation that comes from pixels: these are many and count
 // in full, unlike a prior, which gives way to such a match.
-void JudgeWeakestRotation(const Correspondences& matches,
+void JudgeWeakestRotation(const std::vector<CameraMatches>& cameras,
                           const MotionEstimate& estimate, double by_pixels,
                           double spurious_information,
                           double max_standard_deviation, Degeneracy* result);
@@ -51,8 +51,8 @@ void JudgeWeakestRotation(const Correspondences& matches,
 //
 // if these are along the ray and across it: the lever is long where the error
 // is large, and the error is measured where it is small. `weights` of the
-// matches in their order; empty: 1 each.
-double SpuriousInformation(const Correspondences& matches,
+// matches of all cameras in their order; empty: 1 each.
+double SpuriousInformation(const std::vector<CameraMatches>& cameras,
                            const std::vector<double>& weights);
 
 }  // namespace rgbd_pose

@@ -24,19 +24,22 @@ constexpr double kOneInTwoHundred = 18.5;
 
 std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
                                 std::unique_ptr<ceres::LossFunction> loss) {
-  if (cost == nullptr) throw InputError("an estimator needs a cost");
   std::vector<RobustCost> terms;
   terms.push_back({std::move(cost), std::move(loss)});
   return terms;
 }
 
 // Whether most points are beyond the range of any RGB-D camera.
-bool AreFarAway(const Correspondences& matches) {
+bool AreFarAway(const std::vector<CameraMatches>& cameras) {
   constexpr double kFarthest = 100.0;  // m
-  const auto far = std::count_if(
-      matches.begin(), matches.end(),
-      [](const Match& match) { return match.prev.depth > kFarthest; });
-  return 2 * static_cast<size_t>(far) > matches.size();
+  size_t all = 0, far = 0;
+  for (const CameraMatches& camera : cameras) {
+    all += camera.matches->size();
+    far += std::count_if(
+        camera.matches->begin(), camera.matches->end(),
+        [](const Match& match) { return match.prev.depth > kFarthest; });
+  }
+  return 2 * far > all;
 }
 
 }  // namespace
@@ -69,10 +72,11 @@ class Estimator::Impl {
     RequireSound(options.Check(), "estimator: ");
   }
 
-  void Run(const FramePair& pair, const Rigid3d& guess,
+  void Run(const FramePair* pairs, size_t num_pairs, const Rigid3d& guess,
            MotionEstimate* estimate) {
     const bool is_finite = guess.IsFinite();
-    Reset(pair, is_finite ? guess : Rigid3d(), estimate);
+    pairs_.assign(pairs, pairs + num_pairs);
+    Reset(is_finite ? guess : Rigid3d(), estimate);
     if (!is_finite) {
       out_->status = EstimateStatus::kNotConverged;
       out_->reason = "the guess is not finite";
@@ -82,13 +86,17 @@ class Estimator::Impl {
       out_->status = EstimateStatus::kTooFewMatches;
       out_->reason =
           std::to_string(out_->num_used) + " usable matches, 3 are needed";
-      if (matches_->rejected() > 0) {
-        out_->reason += "; " + std::to_string(matches_->rejected()) +
+      size_t rejected = 0;
+      for (const CameraMatches& camera : terms_.cameras()) {
+        rejected += camera.matches->rejected();
+      }
+      if (rejected > 0) {
+        out_->reason += "; " + std::to_string(rejected) +
                         " rejected as not finite or out of range";
       }
       return;
     }
-    const bool is_found = minimiser_.Run(guess, pair.num_levels);
+    const bool is_found = minimiser_.Run(guess, pairs_.front().num_levels);
     out_->iterations = minimiser_.iterations();
     if (is_found) {
       out_->cur_from_prev = minimiser_.motion();
@@ -96,30 +104,27 @@ class Estimator::Impl {
     } else {
       JudgeGuess(guess);
     }
-    if (!out_->ok() && AreFarAway(*matches_)) {
+    if (!out_->ok() && AreFarAway(terms_.cameras())) {
       out_->reason += "; most depths exceed 100 m; are they in millimetres?";
     }
     out_->num_used = terms_.num_used();
   }
 
  private:
-  void Reset(const FramePair& pair, const Rigid3d& guess,
-             MotionEstimate* estimate) {
-    static const Correspondences kNone;
-    matches_ = pair.matches != nullptr ? pair.matches : &kNone;
+  void Reset(const Rigid3d& guess, MotionEstimate* estimate) {
+    for (FramePair& pair : pairs_) pair.threads = options_.threads;
+    terms_.Bind(pairs_, guess);
+    const size_t num_matches = terms_.num_matches();
     out_ = estimate;
     out_->reason.clear();
     out_->cur_from_prev = guess;
     out_->covariance.setZero();
-    out_->weights.assign(matches_->size(), 0.0);
-    out_->is_inlier.assign(matches_->size(), false);
-    out_->residual_norms.assign(matches_->size(), 0.0);
-    out_->residual_degrees.assign(matches_->size(), 0);
+    out_->weights.assign(num_matches, 0.0);
+    out_->is_inlier.assign(num_matches, false);
+    out_->residual_norms.assign(num_matches, 0.0);
+    out_->residual_degrees.assign(num_matches, 0);
     out_->num_inliers = out_->iterations = 0;
     out_->sigma = out_->initial_cost = out_->final_cost = 0.0;
-    FramePair data = pair;
-    data.threads = options_.threads;
-    terms_.Bind(data, guess);
     out_->num_used = terms_.num_used();
   }
 
@@ -130,7 +135,7 @@ class Estimator::Impl {
         terms_.Linearise(DerivativesAt(guess), /*with_losses=*/false);
     out_->status = EstimateStatus::kDegenerate;
     out_->reason =
-        FindDegeneracy(sum.hessian, SpuriousInformation(*matches_, {}),
+        FindDegeneracy(sum.hessian, SpuriousInformation(terms_.cameras(), {}),
                        options_.max_standard_deviation)
             .reason;
     if (!out_->reason.empty()) return;
@@ -148,14 +153,15 @@ class Estimator::Impl {
     shares_.JudgeMatches(terms_, out_);
     const NormalEquations sum =
         is_flattened ? shares_.Linearise(terms_, motion) : as_solved;
-    const double spurious = SpuriousInformation(*matches_, out_->weights);
+    const double spurious =
+        SpuriousInformation(terms_.cameras(), out_->weights);
     Degeneracy degeneracy =
         FindDegeneracy(sum.hessian, spurious, options_.max_standard_deviation);
     if (!degeneracy.is_degenerate() &&
         out_->num_inliers < kHardlyWrong * terms_.num_used()) {
       const double by_pixels =
           shares_.KnownByPixels(terms_, degeneracy.weakest_rotation);
-      JudgeWeakestRotation(*matches_, *out_, by_pixels, spurious,
+      JudgeWeakestRotation(terms_.cameras(), *out_, by_pixels, spurious,
                            options_.max_standard_deviation, &degeneracy);
     }
     if (degeneracy.is_degenerate()) {
@@ -213,7 +219,7 @@ class Estimator::Impl {
   CovarianceAccumulator shares_;
 
   // State of the current call.
-  const Correspondences* matches_ = nullptr;
+  std::vector<FramePair> pairs_;
   MotionEstimate* out_ = nullptr;
 };
 
@@ -242,7 +248,14 @@ void Estimator::Estimate(const FramePair& pair, const Rigid3d& guess,
                          MotionEstimate* estimate) {
   estimate->solve_ms = 0.0;
   const StageTimer timer(&estimate->solve_ms);
-  impl_->Run(pair, guess, estimate);
+  impl_->Run(&pair, 1, guess, estimate);
+}
+
+void Estimator::Estimate(const std::vector<FramePair>& pairs,
+                         const Rigid3d& guess, MotionEstimate* estimate) {
+  estimate->solve_ms = 0.0;
+  const StageTimer timer(&estimate->solve_ms);
+  impl_->Run(pairs.data(), pairs.size(), guess, estimate);
 }
 
 }  // namespace rgbd_pose

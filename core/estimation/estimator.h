@@ -90,6 +90,13 @@ class Estimator {
   void Estimate(const FramePair& pair, const Rigid3d& guess,
                 MotionEstimate* estimate);
 
+  // The same for the pairs of several cameras on one body, whose motion is
+  // estimated, with costs by MountCosts. The matches of the first pair come
+  // first in the estimate, which has FramePair::num_levels of that pair. Throws
+  // InputError for a cost of a camera without a pair.
+  void Estimate(const std::vector<FramePair>& pairs, const Rigid3d& guess,
+                MotionEstimate* estimate);
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

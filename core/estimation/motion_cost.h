@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/estimation/camera_mounting.h"
 #include "core/estimation/correspondences.h"
 #include "core/estimation/frame_view.h"
 #include "core/geometry/motion.h"
@@ -100,6 +101,10 @@ class MotionCost {
   // The share of independent information in the blocks: below 1 if they depend
   // on each other (e.g. neighbouring pixels). Multiplies the cost.
   virtual double information_factor() const { return 1.0; }
+
+  // Where the camera of the pair is on the body whose motion is estimated: the
+  // motion of everything below is that of the body (see costs/mounted_costs.h).
+  virtual CameraMounting mounting() const { return {}; }
 
   // When Associate has to be called.
   virtual AssociationPolicy association() const = 0;

@@ -39,9 +39,10 @@ struct MotionEstimate {
   // if the motion was not judged.
   MotionMatrix covariance = MotionMatrix::Zero();
 
-  // Per match, in the order of the Correspondences: robust weight in [0, 1]
-  // (0 also for matches that no cost could use) and whether the match agrees
-  // with the motion within 99 % of the noise's distribution.
+  // Per match, in the order of the Correspondences, those of the first camera
+  // first: robust weight in [0, 1] (0 also for matches that no cost could use)
+  // and whether the match agrees with the motion within 99 % of the noise's
+  // distribution.
   std::vector<double> weights;
   std::vector<bool> is_inlier;
 

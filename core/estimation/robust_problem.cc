@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "core/util/counter_random.h"
+#include "core/util/input_error.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
@@ -26,13 +28,47 @@ constexpr double kScaleTolerance = 0.01;
 }  // namespace
 
 RobustProblem::RobustProblem(std::vector<RobustCost> costs) {
-  for (RobustCost& cost : costs) terms_.push_back({std::move(cost)});
+  for (RobustCost& cost : costs) {
+    if (cost.cost == nullptr) throw InputError("an estimator needs a cost");
+    const CameraMounting mounting = cost.cost->mounting();
+    for (const RobustTerm& term : terms_) {
+      const CameraMounting other = term.cost->mounting();
+      if (other.camera != mounting.camera ||
+          other.body_from_cam == mounting.body_from_cam) {
+        continue;
+      }
+      throw InputError("camera " + std::to_string(mounting.camera) +
+                       " has costs with two different mountings");
+    }
+    terms_.push_back({std::move(cost)});
+  }
 }
 
-void RobustProblem::Bind(const FramePair& pair, const Rigid3d& cur_from_prev) {
-  num_matches_ = pair.matches != nullptr ? pair.matches->size() : 0;
+void RobustProblem::Bind(const std::vector<FramePair>& pairs,
+                         const Rigid3d& cur_from_prev) {
+  static const Correspondences kNone;
+  num_matches_ = 0;
+  cameras_.clear();
+  for (const FramePair& pair : pairs) {
+    const Correspondences* const matches =
+        pair.matches != nullptr ? pair.matches : &kNone;
+    cameras_.push_back({matches, num_matches_, Rigid3d()});
+    num_matches_ += matches->size();
+  }
   ResetScales();
-  for (const RobustTerm& term : terms_) term.cost->Bind(pair);
+  for (RobustTerm& term : terms_) {
+    const CameraMounting mounting = term.cost->mounting();
+    const auto camera = static_cast<size_t>(mounting.camera);
+    if (camera >= pairs.size()) {
+      throw InputError("the cost " + std::string(term.cost->name()) +
+                       " is of camera " + std::to_string(camera) +
+                       ", counted from 0, but the number of pairs is " +
+                       std::to_string(pairs.size()));
+    }
+    cameras_[camera].body_from_cam = mounting.body_from_cam;
+    term.first_match = cameras_[camera].first;
+    term.cost->Bind(pairs[camera]);
+  }
   Associate(AssociationPolicy::kOnce, cur_from_prev);
   SetLosses(1.0);
 }
@@ -75,8 +111,11 @@ void RobustProblem::CountMatches() {
   for (const RobustTerm& term : terms_) {
     if (!term.has_scale()) continue;
     for (const int match : term.cost->matches()) {
-      if (match >= 0 && counted_[match]) continue;
-      if (match >= 0) counted_[match] = true;
+      if (match >= 0) {
+        const size_t index = term.first_match + match;
+        if (counted_[index]) continue;
+        counted_[index] = true;
+      }
       ++num_used_;
     }
   }

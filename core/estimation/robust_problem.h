@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/estimation/batch_loss.h"
+#include "core/estimation/camera_mounting.h"
 #include "core/estimation/motion_cost.h"
 
 namespace rgbd_pose {
@@ -19,6 +20,7 @@ struct RobustCost {
 
 // A term of a sum that is bound to a pair.
 struct RobustTerm : RobustCost {
+  size_t first_match = 0;           // of its camera, among those of all
   double scale = 1.0;               // see RobustProblem::UpdateScales
   ScaledLoss scaled{nullptr, 1.0};  // the loss at its current width
   std::vector<double> norms = {};   // squared, one per block
@@ -37,13 +39,21 @@ struct RobustTerm : RobustCost {
   }
 };
 
-// The sum that an estimator minimises, bound to one pair at a time.
+// The sum that an estimator minimises, bound to one pair of each camera at a
+// time.
 class RobustProblem {
  public:
+  // Throws InputError for a null cost, or if costs of one camera have different
+  // mountings.
   explicit RobustProblem(std::vector<RobustCost> costs);
 
   // Binds and associates all costs, at the finest level and nominal widths.
-  void Bind(const FramePair& pair, const Rigid3d& cur_from_prev);
+  // Throws InputError for a cost of a camera that has no pair.
+  void Bind(const std::vector<FramePair>& pairs, const Rigid3d& cur_from_prev);
+
+  // The matches of each camera, and how many there are in all.
+  const std::vector<CameraMatches>& cameras() const { return cameras_; }
+  size_t num_matches() const { return num_matches_; }
 
   // Costs with fewer levels use their coarsest one for coarser levels.
   void SetLevel(int level, const Rigid3d& cur_from_prev);
@@ -98,6 +108,7 @@ class RobustProblem {
                        double (*scale)(std::vector<double>* residuals));
 
   std::vector<RobustTerm> terms_;
+  std::vector<CameraMatches> cameras_;
   int num_used_ = 0;
   size_t num_matches_ = 0;
 

@@ -13,6 +13,7 @@
 #include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/vector_lanes.h"
+#include "costs/parts/euler_rates.h"
 #include "costs/parts/point_sums.h"
 
 // Sums over matches, several at a time: the templates of the residual types run

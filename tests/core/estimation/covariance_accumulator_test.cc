@@ -101,7 +101,7 @@ Judged JudgedOf(const std::vector<MadeUp>& costs, bool is_doubled = false) {
   RobustProblem terms(std::move(robust));
   const MotionDerivatives motion =
       LinearizationPoint().DerivativesAt(MotionVector::Zero().eval().data());
-  terms.Bind(FramePair(), Rigid3d());
+  terms.Bind({FramePair()}, Rigid3d());
   if (is_doubled) {
     terms.UpdateScales(motion, [](std::vector<double>*) { return 2.0; });
     terms.SetLosses(1.0);
@@ -136,7 +136,7 @@ TEST(RobustProblemTest, ScalesDoNotDependOnTheNumberOfResiduals) {
     std::vector<RobustCost> robust;
     robust.push_back({std::make_unique<MadeUpCost>(cost), nullptr});
     RobustProblem terms(std::move(robust));
-    terms.Bind(FramePair(), Rigid3d());
+    terms.Bind({FramePair()}, Rigid3d());
     terms.UpdateScales(
         LinearizationPoint().DerivativesAt(MotionVector::Zero().eval().data()),
         [](std::vector<double>* values) {

@@ -117,19 +117,27 @@ TEST(SpuriousInformationTest, IsTheLeverOfNoise) {
   seen.sigma_px = 0.7;
   seen.sigma_depth = 0.003;
   matches.Add(seen, seen);
+  const std::vector<CameraMatches> cameras = {{&matches, 0, Rigid3d()}};
   const double q = 0.003 * 0.003 / (0.0028 * 0.0028);
   const double spurious = (q + 1.0 / q) / 2.0;
-  EXPECT_NEAR(SpuriousInformation(matches, {}), spurious, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(cameras, {}), spurious, 1e-12);
 
   // A missing depth is replaced by the other one; without both, the value is 1.
   Observation blind = seen;
   blind.depth = 0.0;
   matches.Add(blind, seen);
-  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * spurious, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(cameras, {}), 2.0 * spurious, 1e-12);
   matches.Add(blind, blind);
-  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * spurious + 1.0, 1e-12);
-  EXPECT_NEAR(SpuriousInformation(matches, {0.5, 0.25, 0.125}),
+  EXPECT_NEAR(SpuriousInformation(cameras, {}), 2.0 * spurious + 1.0, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(cameras, {0.5, 0.25, 0.125}),
               0.75 * spurious + 0.125, 1e-12);
+
+  // The matches of another camera follow.
+  Correspondences others(camera);
+  others.Add(seen, seen);
+  EXPECT_NEAR(SpuriousInformation({cameras[0], {&others, 3, Rigid3d()}},
+                                  {0.0, 0.0, 0.0, 0.5}),
+              0.5 * spurious, 1e-12);
 }
 
 }  // namespace

@@ -256,7 +256,7 @@ TEST(EstimatorTest, BothCostsCountTheScale) {
   estimator.Estimate({&matches}, estimate.cur_from_prev, &reused);
   EXPECT_NEAR(reused.initial_cost, reused.final_cost, 0.01 * reused.final_cost);
   EXPECT_GE(estimate.initial_cost, estimate.final_cost);
-  estimator.Estimate({}, Rigid3d(), &reused);
+  estimator.Estimate(FramePair(), Rigid3d(), &reused);
   EXPECT_EQ(reused.initial_cost, 0.0);
 }
 

@@ -57,7 +57,7 @@ MotionMatrix HiddenIn(const Correspondences& matches) {
   RobustProblem problem(MakeRobustCosts("point_to_plane", "tukey"));
   FramePair pair;
   pair.matches = &matches;
-  problem.Bind(pair, Rigid3d());
+  problem.Bind({pair}, Rigid3d());
   const MotionDerivatives motion = DerivativesAt(Rigid3d());
   problem.UpdateNorms(motion);
   const MotionMatrix inverse = problem.Linearise(motion).hessian.inverse();
