@@ -129,12 +129,12 @@ nlohmann::json SlamToJson(const Slam& slam,
         {t.x(), t.y(), t.z(), graph.segment(at), graph.IsRemoved(at)});
   }
   nlohmann::json edges = nlohmann::json::array();
-  for (const KeyframePair& pair : graph.pairs()) {
+  for (const MapEdge& pair : graph.pairs()) {
     tracked += pair.is_tracked;
     loops += pair.is_loop;
     pairs += !pair.is_tracked;
     const int kind = pair.is_tracked ? 0 : 1 + pair.is_loop;
-    edges.push_back({pair.edge.ref, pair.edge.cur, kind});
+    edges.push_back({pair.ref, pair.cur, kind});
   }
   return {{"keyframes", graph.size() - dropped},
           {"keyframes_dropped", dropped},

@@ -117,7 +117,7 @@ void LiveView::AddMap(bool has_moved, ViewNews* news) {
     if (has_moved) news->poses = keyframes_;
     return;
   }
-  const std::vector<MapLink>& links = map_->links();
+  const std::vector<MapEdge>& links = map_->links();
   if (links.size() > links_) has_moved = true;
   if (has_moved) news->poses = map_->keyframe_poses();
   news->links.assign(links.begin() + links_, links.end());

@@ -71,7 +71,7 @@ std::string FormatNews(const ViewNews& news) {
            }) +
       ",\"links\":" +
       List(news.links,
-           [](const MapLink& link) {
+           [](const MapEdge& link) {
              return Format("[%d,%d,%d]", link.ref, link.cur, link.is_loop);
            }) +
       ",\"poses\":" +

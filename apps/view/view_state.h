@@ -45,7 +45,7 @@ struct ViewImages {
 struct ViewNews {
   std::vector<ViewFrame> frames;
   std::vector<ViewKeyframe> keyframes;
-  std::vector<MapLink> links;
+  std::vector<MapEdge> links;
   // Poses map_from_cam of all keyframes; empty if no keyframe has moved.
   std::map<int, Rigid3d> poses;
   std::optional<ViewImages> images;

@@ -137,12 +137,12 @@ bool KeyframeGraph::IsRedundant(int at) const {
 
 void KeyframeGraph::Remove(int at, int anchor) {
   RelativePose from_anchor = {anchor, at, CurFromRef(anchor, at)};
-  const auto links = [](const KeyframePair& pair, int which) {
-    return pair.edge.ref == which || pair.edge.cur == which;
+  const auto links = [](const MapEdge& pair, int which) {
+    return pair.ref == which || pair.cur == which;
   };
-  for (const KeyframePair& pair : pairs_) {
+  for (const MapEdge& pair : pairs_) {
     if (!links(pair, at) || !links(pair, anchor)) continue;
-    RelativePose edge = pair.edge;
+    RelativePose edge = pair;
     // The pairs of a map that was loaded may lead to earlier keyframes.
     if (edge.ref == at) edge.covariance = CovarianceOfInverse(edge);
     from_anchor.covariance = CovarianceOf(edge);
@@ -196,8 +196,8 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
     is_free[at] = !IsFixed(at) && (first[at] != at || is_held[at]);
     add(at, !is_free[at]);
   }
-  for (const KeyframePair& pair : pairs_) {
-    RelativePose edge = pair.edge;
+  for (const MapEdge& pair : pairs_) {
+    RelativePose edge = pair;
     if (!is_free[edge.ref] && !is_free[edge.cur]) continue;
     add(edge.ref, true);
     add(edge.cur, true);

@@ -12,15 +12,9 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/pose_graph/pose_graph.h"
+#include "frontend/slam/map_edge.h"
 
 namespace rgbd_pose {
-
-// A measured motion between two keyframes.
-struct KeyframePair {
-  RelativePose edge;        // ref and cur are keyframe numbers
-  bool is_tracked = false;  // by the odometry, which is hardly ever wrong
-  bool is_loop = false;     // links keyframes that were far apart in the graph
-};
 
 // Which keyframes are linked by pairs, regardless of the measured motions.
 // Keyframes have numbers 0, 1, 2, ...
@@ -80,7 +74,7 @@ class KeyframeGraph {
     return pose(cur).Inverse() * pose(ref);
   }
   // All pairs, and the links that they form.
-  const std::vector<KeyframePair>& pairs() const { return pairs_; }
+  const std::vector<MapEdge>& pairs() const { return pairs_; }
   const CovisibilityGraph& links() const { return links_; }
 
   // Adds a keyframe and returns its number. With `is_held` it never moves.
@@ -138,7 +132,7 @@ class KeyframeGraph {
 
   // The effective covariance of a pair at the current poses: larger if the loss
   // reduces its weight. Least squares with these gives the same poses.
-  MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const;
+  MotionMatrix CovarianceAsSolved(const MapEdge& pair) const;
 
   // The error relative to the motion that explains the disagreement of pairs
   // beyond their covariances. 0 if the calibration is accurate.
@@ -163,10 +157,10 @@ class KeyframeGraph {
   // error, and as it counts in the graph; the squared distance of an edge from
   // the current poses, in sigmas.
   MotionMatrix CovarianceOf(const RelativePose& edge) const;
-  MotionMatrix CovarianceInGraph(const KeyframePair& pair) const;
+  MotionMatrix CovarianceInGraph(const MapEdge& pair) const;
   double SquaredDistance(const RelativePose& edge,
                          const MotionMatrix& covariance) const;
-  const ceres::LossFunction* LossOf(const KeyframePair& pair) const {
+  const ceres::LossFunction* LossOf(const MapEdge& pair) const {
     return pair.is_tracked ? tracked_loss_.get() : pair_loss_.get();
   }
   void FitProportionalError();
@@ -177,7 +171,7 @@ class KeyframeGraph {
   double proportional_error_ = 0.0;
   std::vector<Node> nodes_;
   CovisibilityGraph links_;
-  std::vector<KeyframePair> pairs_;
+  std::vector<MapEdge> pairs_;
   std::map<int, int> first_of_;  // first keyframe by segment
 };
 

@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/geometry/motion.h"
 #include "frontend/places/keyframe.h"
+#include "frontend/slam/map_edge.h"
 
 namespace rgbd_pose {
-
-// A motion between two keyframes, named by id.
-struct MapEdge : RelativePose {
-  bool is_tracked = false;  // measured by the odometry, not by the mapper
-};
 
 // Which way is up in the axes of a keyframe, as an accelerometer has measured.
 struct MapUp {

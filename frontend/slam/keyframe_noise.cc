@@ -54,13 +54,13 @@ MotionMatrix KeyframeGraph::CovarianceOf(const RelativePose& edge) const {
   return covariance;
 }
 
-MotionMatrix KeyframeGraph::CovarianceInGraph(const KeyframePair& pair) const {
+MotionMatrix KeyframeGraph::CovarianceInGraph(const MapEdge& pair) const {
   // Errors of tracked pairs cancel in part along a path: what is wrong with a
   // keyframe affects the pair that ends with it and the pair that begins with
   // it. This share of the covariance remains, as measured on paths of real
   // cameras with a ground truth.
   constexpr double kRemaining = 0.5;
-  RelativePose edge = pair.edge;
+  RelativePose edge = pair;
   if (pair.is_tracked) edge.covariance *= kRemaining;
   return CovarianceOf(edge);
 }
@@ -71,10 +71,10 @@ double KeyframeGraph::SquaredDistance(const RelativePose& edge,
                                     edge.cur_from_ref, covariance);
 }
 
-MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
+MotionMatrix KeyframeGraph::CovarianceAsSolved(const MapEdge& pair) const {
   const MotionMatrix covariance = CovarianceInGraph(pair);
   double rho[3];
-  LossOf(pair)->Evaluate(SquaredDistance(pair.edge, covariance), rho);
+  LossOf(pair)->Evaluate(SquaredDistance(pair, covariance), rho);
   return covariance / std::max(rho[1], 1e-9);
 }
 
@@ -84,9 +84,9 @@ MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
 void KeyframeGraph::FitProportionalError() {
   const auto disagree = [this] {
     std::vector<double> squares;
-    for (const KeyframePair& pair : pairs_) {
+    for (const MapEdge& pair : pairs_) {
       if (pair.is_tracked) continue;
-      squares.push_back(SquaredDistance(pair.edge, CovarianceOf(pair.edge)));
+      squares.push_back(SquaredDistance(pair, CovarianceOf(pair)));
     }
     return squares.size() >= kMinPairsForProportionalError &&
            QuantileInPlace(&squares, 0.5) > kMedianSquare;

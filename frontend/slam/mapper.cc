@@ -70,6 +70,12 @@ void Mapper::Index(int at) {
   index_.Add(at, keyframes_[at].features->described.descriptors);
 }
 
+MapEdge Mapper::ById(MapEdge numbered) const {
+  numbered.ref = keyframes_[numbered.ref].id;
+  numbered.cur = keyframes_[numbered.cur].id;
+  return numbered;
+}
+
 void Mapper::Load(const KeyframeMap& map, bool is_held) {
   RequireSound(map.Check(), "map: ");
   const std::string difference = map.CheckCamera(tracker_->images().camera);
@@ -130,9 +136,8 @@ MapUpdate Mapper::Add(Keyframe added,
   if (update.joined > 0) PairByPose(newest, frame);
   Index(newest);
   for (size_t i = known_pairs; i < graph_.pairs().size(); ++i) {
-    const KeyframePair& pair = graph_.pairs()[i];
-    update.links.push_back({keyframes_[pair.edge.ref].id,
-                            keyframes_[pair.edge.cur].id, pair.is_loop});
+    const MapEdge& pair = graph_.pairs()[i];
+    update.links.push_back(ById(pair));
     update.pairs += !pair.is_tracked;
     update.loops += pair.is_loop;
   }
@@ -274,10 +279,8 @@ KeyframeMap Mapper::Map(bool as_solved) const {
       map.ups.push_back({keyframes_[at].id, up->in_cam, up->sigma});
     }
   }
-  for (const KeyframePair& pair : graph_.pairs()) {
-    MapEdge edge = {pair.edge, pair.is_tracked};
-    edge.ref = keyframes_[pair.edge.ref].id;
-    edge.cur = keyframes_[pair.edge.cur].id;
+  for (const MapEdge& pair : graph_.pairs()) {
+    MapEdge edge = ById(pair);
     if (as_solved) edge.covariance = graph_.CovarianceAsSolved(pair);
     map.edges.push_back(edge);
   }

@@ -56,17 +56,10 @@ struct KeyframePlace {
   int segment = 0;       // `map` is the world frame of this segment
 };
 
-// Two keyframes linked by a measured motion, by id.
-struct MapLink {
-  int ref = 0;           // the earlier one
-  int cur = 0;           // the later one
-  bool is_loop = false;  // links keyframes that were far apart in the graph
-};
-
 // Changes of the map.
 struct MapUpdate {
   std::map<int, KeyframePlace> moved;  // by id, since the last update
-  std::vector<MapLink> links;          // new ones, including tracked ones
+  std::vector<MapEdge> links;          // new ones, by id
   int pairs = 0;                       // number of pairs added
   int loops = 0;                       // number of these that are loops
   int joined = 0;                      // number of segments merged
@@ -134,6 +127,8 @@ class Mapper {
   // Compresses the images of a keyframe; returns its number in graph_.
   int AddKeyframe(Keyframe keyframe, const PreparedFrame& frame, bool is_held);
   void Index(int at);
+  // The edge of two keyframes that graph_ knows by number.
+  MapEdge ById(MapEdge numbered) const;
   Keyframe WithImages(int at) const;
   void FindReturn(int newest, MapUpdate* update) const;
   void CullKeyframes(int newest);

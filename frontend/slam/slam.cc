@@ -55,9 +55,7 @@ void Slam::Load(KeyframeMap map, bool is_held) {
   }
   for (MapUp& up : map.ups) up.keyframe += id;
   mapper_.Load(map, is_held);
-  for (const RelativePose& edge : map.edges) {
-    links_.push_back({edge.ref, edge.cur, false});
-  }
+  links_.insert(links_.end(), map.edges.begin(), map.edges.end());
   for (const Keyframe& keyframe : map.keyframes) {
     // In the odometry, ids of loaded keyframes stay below -1.
     first_id_ = std::max(first_id_, keyframe.id + 2);

@@ -149,7 +149,7 @@ class Slam {
   const std::map<int, Rigid3d>& keyframe_poses() const {
     return map_from_keyframe_;
   }
-  const std::vector<MapLink>& links() const { return links_; }
+  const std::vector<MapEdge>& links() const { return links_; }
   // Converts an odometry frame number (TrackedFrame::reference) to a map id.
   int MapId(int frame) const { return frame + first_id_; }
 
@@ -190,7 +190,7 @@ class Slam {
   // State after the last applied update.
   std::map<int, Rigid3d> map_from_keyframe_;
   std::map<int, int> segments_;
-  std::vector<MapLink> links_;
+  std::vector<MapEdge> links_;
 
   // State of the last frame.
   std::optional<int> reference_;  // map id of its reference

@@ -227,8 +227,8 @@ TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
   const Rigid3d before = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
   circle.graph.Remove(10, 9);
   EXPECT_TRUE(circle.graph.IsRemoved(10));
-  for (const KeyframePair& pair : circle.graph.pairs()) {
-    EXPECT_TRUE(pair.edge.ref != 10 && pair.edge.cur != 10);
+  for (const MapEdge& pair : circle.graph.pairs()) {
+    EXPECT_TRUE(pair.ref != 10 && pair.cur != 10);
   }
   circle.graph.AddPair(circle.Measured(0, kPoses - 1), false, true);
   ASSERT_EQ(circle.graph.SolveAll(), "");
@@ -316,8 +316,8 @@ TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
     as_solved.AddPose(circle.graph.pose(i), i == 0);
     as_measured.AddPose(circle.graph.pose(i), i == 0);
   }
-  for (const KeyframePair& pair : circle.graph.pairs()) {
-    RelativePose edge = pair.edge;
+  for (const MapEdge& pair : circle.graph.pairs()) {
+    RelativePose edge = pair;
     as_measured.AddEdge(edge);
     edge.covariance = circle.graph.CovarianceAsSolved(pair);
     as_solved.AddEdge(edge);
