@@ -90,10 +90,10 @@ class Estimator {
   void Estimate(const FramePair& pair, const Rigid3d& guess,
                 MotionEstimate* estimate);
 
-  // The same for the pairs of several cameras on one body, whose motion is
-  // estimated, with costs by MountCosts. The matches of the first pair come
-  // first in the estimate, which has FramePair::num_levels of that pair. Throws
-  // InputError for a cost of a camera without a pair.
+  // The motion of a body from the pairs of several cameras on it. MountCosts
+  // makes the costs. The matches of the first pair come first in the estimate;
+  // its FramePair::num_levels counts for all pairs. Throws InputError if a cost
+  // is of a camera that has no pair.
   void Estimate(const std::vector<FramePair>& pairs, const Rigid3d& guess,
                 MotionEstimate* estimate);
 

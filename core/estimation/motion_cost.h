@@ -102,8 +102,8 @@ class MotionCost {
   // on each other (e.g. neighbouring pixels). Multiplies the cost.
   virtual double information_factor() const { return 1.0; }
 
-  // Where the camera of the pair is on the body whose motion is estimated: the
-  // motion of everything below is that of the body (see costs/mounted_costs.h).
+  // Where the camera of the pair is on the body whose motion is estimated. All
+  // motions below are those of the body (see costs/mounted_costs.h).
   virtual CameraMounting mounting() const { return {}; }
 
   // When Associate has to be called.
