@@ -11,7 +11,7 @@ namespace rgbd_pose {
 // One of the cameras on a body.
 struct CameraMounting {
   int camera = 0;         // the index of its pair among those of an estimate
-  Rigid3d body_from_cam;  // where it is; does not change
+  Rigid3d body_from_cam;  // its place on the body, which is constant
 };
 
 // The matches of one camera among those of all.

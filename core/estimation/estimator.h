@@ -92,8 +92,8 @@ class Estimator {
 
   // The motion of a body from the pairs of several cameras on it. MountCosts
   // makes the costs. The matches of the first pair come first in the estimate;
-  // its FramePair::num_levels counts for all pairs. Throws InputError if a cost
-  // is of a camera that has no pair.
+  // its FramePair::num_levels counts for all pairs. Throws InputError unless
+  // there are as many pairs as the costs have cameras.
   void Estimate(const std::vector<FramePair>& pairs, const Rigid3d& guess,
                 MotionEstimate* estimate);
 

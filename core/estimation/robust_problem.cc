@@ -47,6 +47,16 @@ RobustProblem::RobustProblem(std::vector<RobustCost> costs) {
 void RobustProblem::Bind(const std::vector<FramePair>& pairs,
                          const Rigid3d& cur_from_prev) {
   static const Correspondences kNone;
+  int num_cameras = 1;
+  for (const RobustTerm& term : terms_) {
+    num_cameras = std::max(num_cameras, term.cost->mounting().camera + 1);
+  }
+  if (pairs.size() != static_cast<size_t>(num_cameras)) {
+    throw InputError("the costs need the pairs of " +
+                     std::to_string(num_cameras) +
+                     " camera(s), but the number of pairs is " +
+                     std::to_string(pairs.size()));
+  }
   num_matches_ = 0;
   cameras_.clear();
   for (const FramePair& pair : pairs) {
@@ -58,16 +68,9 @@ void RobustProblem::Bind(const std::vector<FramePair>& pairs,
   ResetScales();
   for (RobustTerm& term : terms_) {
     const CameraMounting mounting = term.cost->mounting();
-    const auto camera = static_cast<size_t>(mounting.camera);
-    if (camera >= pairs.size()) {
-      throw InputError("the cost " + std::string(term.cost->name()) +
-                       " is of camera " + std::to_string(camera) +
-                       ", counted from 0, but the number of pairs is " +
-                       std::to_string(pairs.size()));
-    }
-    cameras_[camera].body_from_cam = mounting.body_from_cam;
-    term.first_match = cameras_[camera].first;
-    term.cost->Bind(pairs[camera]);
+    cameras_[mounting.camera].body_from_cam = mounting.body_from_cam;
+    term.first_match = cameras_[mounting.camera].first;
+    term.cost->Bind(pairs[mounting.camera]);
   }
   Associate(AssociationPolicy::kOnce, cur_from_prev);
   SetLosses(1.0);

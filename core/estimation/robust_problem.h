@@ -20,7 +20,8 @@ struct RobustCost {
 
 // A term of a sum that is bound to a pair.
 struct RobustTerm : RobustCost {
-  size_t first_match = 0;           // of its camera, among those of all
+  // The index of the first match of its camera among the matches of all.
+  size_t first_match = 0;
   double scale = 1.0;               // see RobustProblem::UpdateScales
   ScaledLoss scaled{nullptr, 1.0};  // the loss at its current width
   std::vector<double> norms = {};   // squared, one per block
@@ -48,7 +49,7 @@ class RobustProblem {
   explicit RobustProblem(std::vector<RobustCost> costs);
 
   // Binds and associates all costs, at the finest level and nominal widths.
-  // Throws InputError for a cost of a camera that has no pair.
+  // Throws InputError unless there is a pair for each camera of the costs.
   void Bind(const std::vector<FramePair>& pairs, const Rigid3d& cur_from_prev);
 
   // The matches of each camera, and how many there are in all.

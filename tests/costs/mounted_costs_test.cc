@@ -238,7 +238,7 @@ TEST(MountedCostsTest, WrongMatchesAreJudgedAsThoseOfOneCamera) {
     const MotionEstimate expected = one.Estimate(all);
     MotionEstimate estimate;
     two.Estimate({PairOf(first), PairOf(second)}, Rigid3d(), &estimate);
-    EXPECT_EQ(ToString(estimate.status), ToString(expected.status)) << seed;
+    EXPECT_EQ(estimate.status, expected.status) << seed << estimate.reason;
     EXPECT_EQ(estimate.num_used, expected.num_used);
     EXPECT_EQ(estimate.num_inliers, expected.num_inliers);
     ok += expected.ok();
@@ -349,13 +349,21 @@ TEST(MountedCostsTest, RefusesWhatCannotBe) {
       {"camera 0 has costs with two different mountings"});
   const Correspondences matches;
   Estimator estimator({}, CostsOfBoth("reprojection", "none"));
-  ExpectInputError(
-      [&] { estimator.Estimate(matches); },
-      {"the cost reprojection is of camera 1, counted from 0, but the number "
-       "of pairs is 1"});
+  ExpectInputError([&] { estimator.Estimate(matches); },
+                   {"the costs need the pairs of 2 camera(s), but the number "
+                    "of pairs is 1"});
   MotionEstimate estimate;
   estimator.Estimate({PairOf(matches), PairOf(matches)}, Rigid3d(), &estimate);
   EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches);
+  // A pair that no cost would use.
+  Estimator of_one({}, MakeRobustCosts());
+  ExpectInputError(
+      [&] {
+        of_one.Estimate({PairOf(matches), PairOf(matches)}, Rigid3d(),
+                        &estimate);
+      },
+      {"the costs need the pairs of 1 camera(s), but the number of pairs is "
+       "2"});
 }
 
 }  // namespace
